@@ -1,0 +1,52 @@
+// One line a diagnostic, in the form that editors and people know from compilers.
+
+#include "base/diagnostic.h"
+
+#include <cstdio>
+
+namespace lyr {
+namespace {
+
+const char* name_of(Severity severity) {
+    switch (severity) {
+        case Severity::note: return "note";
+        case Severity::warning: return "warning";
+        case Severity::error: return "error";
+    }
+    return "error";
+}
+
+void append_coordinate(std::string& line, const char* name, const std::optional<double>& value_mm) {
+    if (!value_mm) return;
+    char text[48];
+    std::snprintf(text, sizeof text, " %s=%.3f", name, *value_mm);
+    line += text;
+}
+
+}  // namespace
+
+std::string to_string(const Diagnostic& diagnostic) {
+    const Location& where = diagnostic.where;
+    std::string line;
+    if (!where.file.empty()) {
+        line = where.file;
+        if (where.line) line += ':' + std::to_string(where.line);
+        if (where.line && where.column) line += ':' + std::to_string(where.column);
+        line += ": ";
+    }
+    line += name_of(diagnostic.severity);
+    line += ": ";
+    if (where.entity) line += '#' + std::to_string(where.entity) + ": ";
+    line += diagnostic.message;
+    if (where.layer || where.x_mm || where.y_mm || where.z_mm) {
+        line += " (at";
+        if (where.layer) line += " layer " + std::to_string(*where.layer);
+        append_coordinate(line, "x", where.x_mm);
+        append_coordinate(line, "y", where.y_mm);
+        append_coordinate(line, "z", where.z_mm);
+        line += ')';
+    }
+    return line;
+}
+
+}  // namespace lyr

@@ -1,0 +1,79 @@
+// Diagnostics: what a program has to say about its input, as values that travel with the result.
+//
+// Contract
+//  1. A function that can fail returns Result<T>: the value, or the one Diagnostic that explains why not.
+//  2. What does not stop the work (a healed gap, a skipped entity) is appended to a Diagnostics list that
+//     is passed down; nothing is printed below apps/.
+//  3. to_string() gives one line, "place: severity: message", with every part of the place that is known.
+
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace lyr {
+
+enum class Severity : std::uint8_t { note, warning, error };
+
+// Why a program ends with what status; docs/exit-status.md lists them for users.
+enum class ExitStatus : int {
+    ok = 0,
+    internal = 1,     // a defect of the program itself
+    usage = 2,        // options that make no sense
+    input = 3,        // the input is missing, unreadable or not what it should be
+    unsupported = 4,  // valid input that uses something not handled yet
+    geometry = 5,     // a model that cannot be cut: gaps, contradictions, open contours
+    output = 6,       // the result cannot be written
+};
+
+// Where in the input or the result. Everything is optional; `line` and `column` count from 1.
+struct Location {
+    std::string file;
+    std::uint32_t line = 0;
+    std::uint32_t column = 0;
+    std::uint64_t entity = 0;  // instance name #entity of a STEP file; 0: none
+    std::optional<int> layer;  // from 0, the layer on the bed
+    std::optional<double> x_mm, y_mm, z_mm;
+};
+
+struct Diagnostic {
+    Severity severity = Severity::error;
+    ExitStatus status = ExitStatus::input;  // of the program, if this is what ends it
+    std::string message;                    // one line, without place and severity
+    Location where;
+};
+
+using Diagnostics = std::vector<Diagnostic>;
+
+std::string to_string(const Diagnostic& diagnostic);
+
+// A value or the reason why there is none.
+template <class T>
+class [[nodiscard]] Result {
+public:
+    Result(T value) : state_(std::in_place_index<0>, std::move(value)) {}
+    Result(Diagnostic error) : state_(std::in_place_index<1>, std::move(error)) {}
+
+    bool ok() const { return state_.index() == 0; }
+    explicit operator bool() const { return ok(); }
+    T& value() { return std::get<0>(state_); }
+    const T& value() const { return std::get<0>(state_); }
+    T& operator*() { return value(); }
+    const T& operator*() const { return value(); }
+    T* operator->() { return &value(); }
+    const T* operator->() const { return &value(); }
+    const Diagnostic& error() const { return std::get<1>(state_); }
+
+private:
+    std::variant<T, Diagnostic> state_;
+};
+
+struct Done {};
+using Status = Result<Done>;
+
+}  // namespace lyr

@@ -1,0 +1,42 @@
+# A room is one folder, one static library and one purpose. The link graph keeps the design's arrows:
+# a room sees the headers of the rooms that it links and of no other.
+
+add_library(lyr_flags INTERFACE)
+# Contraction is off so that results do not depend on the processor's fused multiply-add.
+target_compile_options(lyr_flags INTERFACE -Wall -Wextra -Wconversion -Wshadow -ffp-contract=off)
+if(LYR_SANITIZE)
+  target_compile_options(lyr_flags INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all)
+  target_link_options(lyr_flags INTERFACE -fsanitize=address,undefined)
+endif()
+
+# lyr_room(<library> SOURCES <file>... [LINK <library>...] [PRIVATE <library>...])
+# Headers are included by their path from the root ("kernel/brep/model.h"); each room publishes only
+# its own folder, through a link in the build tree.
+function(lyr_room name)
+  cmake_parse_arguments(ROOM "" "" "SOURCES;LINK;PRIVATE" ${ARGN})
+  file(RELATIVE_PATH path ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+  set(published ${PROJECT_BINARY_DIR}/rooms/${name})
+  get_filename_component(parent ${published}/${path} DIRECTORY)
+  file(MAKE_DIRECTORY ${parent})
+  file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${published}/${path} SYMBOLIC)
+  if(ROOM_SOURCES)
+    add_library(${name} STATIC ${ROOM_SOURCES})
+    target_link_libraries(${name} PUBLIC ${ROOM_LINK} PRIVATE lyr_flags ${ROOM_PRIVATE})
+    target_include_directories(${name} PUBLIC ${published})
+  else()
+    add_library(${name} INTERFACE)
+    target_link_libraries(${name} INTERFACE ${ROOM_LINK})
+    target_include_directories(${name} INTERFACE ${published})
+  endif()
+endfunction()
+
+# lyr_test(<name> SOURCES <file>... LINK <library>...): one doctest program for one room.
+function(lyr_test name)
+  cmake_parse_arguments(TEST "" "" "SOURCES;LINK" ${ARGN})
+  add_executable(${name} ${TEST_SOURCES} ${PROJECT_SOURCE_DIR}/tests/main.cpp)
+  target_link_libraries(${name} PRIVATE ${TEST_LINK} lyr_flags doctest::doctest)
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  target_compile_definitions(${name} PRIVATE
+    LYR_FIXTURES="${PROJECT_SOURCE_DIR}/fixtures" LYR_BUILD="${PROJECT_BINARY_DIR}")
+  add_test(NAME ${name} COMMAND ${name})
+endfunction()
