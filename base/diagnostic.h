@@ -29,6 +29,8 @@ enum class ExitStatus : int {
     unsupported = 4,  // valid input that uses something not handled yet
     geometry = 5,     // a model that cannot be cut: gaps, contradictions, open contours
     output = 6,       // the result cannot be written
+    machine = 7,      // the printer cannot do, or did not do, what the file asks
+    stopped = 8,      // ended on request (SIGINT, SIGTERM) before it was done
 };
 
 // Where in the input or the result. Everything is optional; `line` and `column` count from 1.
