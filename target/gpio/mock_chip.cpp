@@ -1,0 +1,42 @@
+// The mock keeps the levels itself; everything else is up to its observer.
+
+#include "target/gpio/mock_chip.h"
+
+namespace lyr::gpio {
+
+MockChip::MockChip(std::size_t line_count, const Clock& clock, Observer observer, Fault fault)
+    : line_count_(line_count),
+      clock_(clock),
+      observer_(std::move(observer)),
+      fault_(std::move(fault)) {}
+
+MockChip::~MockChip() {
+    (void)MockChip::release();
+}
+
+Status MockChip::write(LineMask changed, LineMask levels) {
+    if (released_)
+        return Diagnostic{Severity::error,
+                          ExitStatus::internal,
+                          "a line was written after the lines were released",
+                          {}};
+    if (fault_)
+        if (auto error = fault_(writes_++)) return std::move(*error);
+    changed &= all_lines(line_count_);
+    levels_ = (levels_ & ~changed) | (levels & changed);
+    if (observer_) observer_({clock_.now_ns(), changed, levels_});
+    return Done{};
+}
+
+Status MockChip::release() {
+    if (released_) return Done{};
+    const Status low = write(all_lines(line_count_), 0);
+    released_ = true;
+    return low;
+}
+
+MockChip::Observer recorder(std::vector<LineWrite>& writes) {
+    return [&writes](const LineWrite& write) { writes.push_back(write); };
+}
+
+}  // namespace lyr::gpio
