@@ -35,12 +35,12 @@ enum class ExitStatus : int {
 
 // Where in the input or the result. Everything is optional; `line` and `column` count from 1.
 struct Location {
-    std::string file;
+    std::string file{};
     std::uint32_t line = 0;
     std::uint32_t column = 0;
     std::uint64_t entity = 0;  // instance name #entity of a STEP file; 0: none
-    std::optional<int> layer;  // from 0, the layer on the bed
-    std::optional<double> x_mm, y_mm, z_mm;
+    std::optional<int> layer{};  // from 0, the layer on the bed
+    std::optional<double> x_mm{}, y_mm{}, z_mm{};
 };
 
 struct Diagnostic {
