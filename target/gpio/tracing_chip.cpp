@@ -50,24 +50,26 @@ TracingChip::~TracingChip() {
 
 Status TracingChip::write(LineMask changed, LineMask levels) {
     Status written = inner_.write(changed, levels);
-    if (!written) return written;
-    changed &= all_lines(line_count());
-    LineMask edges = (levels_ ^ levels) & changed;
-    if (!edges) return written;
-    levels_ ^= edges;
-    append_time();
-    for (; edges; edges &= edges - 1)
-        append_level(static_cast<std::size_t>(std::countr_zero(edges)));
-    if (buffer_.size() >= flush_bytes) flush();
+    if (written) trace(changed & all_lines(line_count()), levels);
     return written;
 }
 
 Status TracingChip::release() {
     if (released_) return Done{};
-    const Status low = write(all_lines(line_count()), 0);
     released_ = true;
-    const Status released = inner_.release();
-    return low ? released : low;
+    Status released = inner_.release();
+    if (released) trace(all_lines(line_count()), 0);
+    return released;
+}
+
+void TracingChip::trace(LineMask changed, LineMask levels) {
+    LineMask edges = (levels_ ^ levels) & changed;
+    if (!edges) return;
+    levels_ ^= edges;
+    append_time();
+    for (; edges; edges &= edges - 1)
+        append_level(static_cast<std::size_t>(std::countr_zero(edges)));
+    if (buffer_.size() >= flush_bytes) flush();
 }
 
 void TracingChip::finish() {

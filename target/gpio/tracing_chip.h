@@ -35,6 +35,7 @@ public:
     void finish();
 
 private:
+    void trace(LineMask changed, LineMask levels);
     void append_time();
     void append_level(std::size_t line);
     void flush();
