@@ -1,0 +1,102 @@
+// With chord c and sagitta s: tan(sweep / 4) = 2 s / c and radius = (c^2 / 4 + s^2) / (2 s). The first is exact
+// and stable for every arc; what the second loses for flat arcs is avoided by not going through the radius.
+
+#include "kernel/contour/arc.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace lyr {
+namespace {
+
+Vector2 left_of(const Vector2& direction) { return {-direction.y(), direction.x()}; }
+
+Vector2 rotated(const Vector2& v, double angle) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
+}
+
+// (x - sin x) without cancellation for small x: its power series to x^9, exact to rounding below 0.25.
+double x_minus_sin(double x) {
+    if (std::abs(x) > 0.25) return x - std::sin(x);
+    const double x2 = x * x;
+    return x * x2 / 6 * (1 - x2 / 20 * (1 - x2 / 42 * (1 - x2 / 72 * (1 - x2 / 110))));
+}
+
+}  // namespace
+
+double sweep_rad(const Point2& start, const Segment& segment) {
+    if (segment.sagitta_mm == 0) return 0;
+    return 4 * std::atan2(2 * segment.sagitta_mm, (segment.end - start).norm());
+}
+
+std::optional<ArcCircle> circle_of(const Point2& start, const Segment& segment) {
+    if (segment.sagitta_mm == 0) return std::nullopt;
+    const Vector2 chord = segment.end - start;
+    const double c = chord.norm(), s = segment.sagitta_mm;
+    const double radius = (c * c / 4 + s * s) / (2 * s);
+    const Point2 middle = 0.5 * (start + segment.end);
+    return ArcCircle{middle + (radius - s) / c * left_of(chord), std::abs(radius)};
+}
+
+double length_mm(const Point2& start, const Segment& segment) {
+    const double chord = (segment.end - start).norm();
+    const double half = sweep_rad(start, segment) / 2;
+    if (half == 0) return chord;
+    // chord = 2 r sin(half), length = 2 r half
+    if (std::abs(half) < 1) return chord * half / std::sin(half);
+    const double s = segment.sagitta_mm;
+    return std::abs((chord * chord / 4 + s * s) / s * half);
+}
+
+double enclosed_area_mm2(const Point2& start, const Segment& segment) {
+    const double sweep = sweep_rad(start, segment);
+    if (sweep == 0) return 0;
+    const double chord = (segment.end - start).norm();
+    const double radius = (chord * chord / 4 / segment.sagitta_mm + segment.sagitta_mm) / 2;
+    return radius * radius * x_minus_sin(sweep) / 2;
+}
+
+Vector2 start_tangent(const Point2& start, const Segment& segment) {
+    return rotated((segment.end - start).normalized(), -sweep_rad(start, segment) / 2);
+}
+
+Vector2 end_tangent(const Point2& start, const Segment& segment) {
+    return rotated((segment.end - start).normalized(), sweep_rad(start, segment) / 2);
+}
+
+Point2 point_at(const Point2& start, const Segment& segment, double fraction) {
+    const double sweep = sweep_rad(start, segment);
+    const Vector2 chord = segment.end - start;
+    if (sweep == 0) return start + fraction * chord;
+    // The chord to the point at this fraction: turned back by the rest of half the sweep.
+    const double half = sweep / 2;
+    const double scale = std::sin(half * fraction) / std::sin(half);
+    if (!std::isfinite(scale)) return start;
+    return start + scale * rotated(chord, -half * (1 - fraction));
+}
+
+double distance_mm(const Point2& start, const Segment& segment, const Point2& point) {
+    const double to_ends =
+        std::min((point - start).norm(), (point - segment.end).norm());
+    const auto circle = circle_of(start, segment);
+    if (!circle) {
+        const Vector2 chord = segment.end - start;
+        const double along = (point - start).dot(chord), length2 = chord.squaredNorm();
+        if (along <= 0 || along >= length2) return to_ends;
+        return std::abs(cross(chord, point - start)) / std::sqrt(length2);
+    }
+    const double turn = segment.sagitta_mm > 0 ? 1 : -1;
+    const Vector2 from_centre = point - circle->centre, to_start = start - circle->centre;
+    double angle = turn * std::atan2(cross(to_start, from_centre), to_start.dot(from_centre));
+    if (angle < 0) angle += 2 * std::numbers::pi;
+    if (angle > std::abs(sweep_rad(start, segment))) return to_ends;
+    return std::abs(from_centre.norm() - circle->radius_mm);
+}
+
+Segment arc_with_sweep(const Point2& start, const Point2& end, double sweep) {
+    return {end, (end - start).norm() / 2 * std::tan(sweep / 4)};
+}
+
+}  // namespace lyr

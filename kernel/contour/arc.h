@@ -1,0 +1,52 @@
+// One line or circular arc, given by its ends and its sagitta, and what can be asked of it.
+//
+// Contract
+//  1. The sagitta is the signed height of the arc over its chord: positive turns left (counter-clockwise from
+//     start to end), zero is a line. |sagitta| may exceed half the chord (more than a semicircle).
+//  2. Every answer is continuous as the sagitta goes through zero: no jump between a line and a flat arc.
+//  3. enclosed area is that between the chord and the arc, positive to the right of the chord, so that
+//     adding it to the polygon's area gives the area of a counter-clockwise contour.
+
+#pragma once
+
+#include <optional>
+
+#include "kernel/geometry/vector.h"
+
+namespace lyr {
+
+struct Segment {
+    Point2 end;
+    double sagitta_mm = 0;
+};
+
+struct ArcCircle {
+    Point2 centre;
+    double radius_mm;
+};
+
+inline double cross(const Vector2& a, const Vector2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+// The angle swept, signed, in (-2 pi, 2 pi); 0 for a line.
+double sweep_rad(const Point2& start, const Segment& segment);
+
+// None for a line.
+std::optional<ArcCircle> circle_of(const Point2& start, const Segment& segment);
+
+double length_mm(const Point2& start, const Segment& segment);
+double enclosed_area_mm2(const Point2& start, const Segment& segment);
+
+// Unit tangents in the direction of travel; the chord's direction for a line.
+Vector2 start_tangent(const Point2& start, const Segment& segment);
+Vector2 end_tangent(const Point2& start, const Segment& segment);
+
+// The point at a fraction (0..1) of the segment's length.
+Point2 point_at(const Point2& start, const Segment& segment, double fraction);
+
+// The distance of a point to the segment.
+double distance_mm(const Point2& start, const Segment& segment, const Point2& point);
+
+// The arc of a circle from start to end that sweeps `sweep` (not a multiple of 2 pi).
+Segment arc_with_sweep(const Point2& start, const Point2& end, double sweep);
+
+}  // namespace lyr

@@ -1,0 +1,182 @@
+// See the header for the method; all of it is counting signed turns and crossings of outlines.
+
+#include "kernel/section/containment.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "kernel/contour/arc.h"
+
+namespace lyr {
+namespace {
+
+constexpr double full_turn_rad = 2 * std::numbers::pi;
+
+// Steps that cut an edge into outline points: 48 a turn of a circle keeps them an eighth of a turn
+// apart six times over; a B-spline gets as many between neighbouring control points' worth of bending.
+constexpr int steps_per_turn = 48;
+constexpr int steps_per_control_point = 8;
+
+int outline_steps(const Edge& edge) {
+    if (std::holds_alternative<Line>(edge.curve)) return 1;
+    if (const auto* spline = std::get_if<BSplineCurve>(&edge.curve)) {
+        return steps_per_control_point * static_cast<int>(spline->control_points.size());
+    }
+    return steps_per_turn;
+}
+
+void append_outline(const Edge& edge, bool reversed, std::vector<Point3>& points) {
+    const int steps = outline_steps(edge);
+    const double from = reversed ? edge.t_end : edge.t_start;
+    const double to = reversed ? edge.t_start : edge.t_end;
+    for (int i = 0; i < steps; ++i) {
+        points.push_back(evaluate(edge.curve, from + (to - from) * i / steps));
+    }
+}
+
+// The signed turn from one point of a loop to the next, in the surface's first parameter.
+double turn_between(const Frame& frame, const Point3& a, const Point3& b) {
+    const Point3 p = frame.to_local(a), q = frame.to_local(b);
+    return std::atan2(p.x() * q.y() - p.y() * q.x(), p.x() * q.x() + p.y() * q.y());
+}
+
+int winding_around(const Frame& frame, const std::vector<Point3>& points) {
+    double turn = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        turn += turn_between(frame, points[i], points[(i + 1) % points.size()]);
+    }
+    return static_cast<int>(std::lround(turn / full_turn_rad));
+}
+
+// A frame's handedness: +1, or -1 after a mirroring.
+double handedness(const Frame& frame) { return frame.x.cross(frame.y).dot(frame.z) < 0 ? -1 : 1; }
+
+struct UvStep {
+    Point2 from, by;
+};
+
+UvStep uv_step(const Surface& surface, const Point3& a, const Point3& b) {
+    const Point2 from = invert(surface, a), to = invert(surface, b);
+    return {from,
+            {std::remainder(to.x() - from.x(), full_turn_rad),
+             std::remainder(to.y() - from.y(), full_turn_rad)}};
+}
+
+}  // namespace
+
+Containment::Containment(const Model& model, FaceId id, const std::vector<double>& vertex_level_mm)
+    : surface_(model[id].surface), same_sense_(model[id].same_sense) {
+    const Face& face = model[id];
+    for (std::uint32_t l = 0; l < face.loop_count; ++l) {
+        const Loop& loop = model.loops[face.first_loop + l];
+        if (loop.coedge_count == 0) continue;
+        LoopOutline outline;
+        for (std::uint32_t c = 0; c < loop.coedge_count; ++c) {
+            const Coedge& coedge = model.coedges[loop.first_coedge + c];
+            append_outline(model[coedge.edge], coedge.reversed, outline.points);
+        }
+        const Edge& any = model[model.coedges[loop.first_coedge].edge];
+        outline.height_mm = vertex_level_mm[any.start.value];
+        std::visit([&](const auto& s) { outline.winding = winding_around(s.frame, outline.points); },
+                   surface_);
+        loops_.push_back(std::move(outline));
+    }
+}
+
+bool Containment::holds(const Point3& point, double z_mm) const {
+    if (std::holds_alternative<Cylinder>(surface_)) return on_cylinder(z_mm);
+    if (const auto* cone = std::get_if<Cone>(&surface_)) return on_cone(*cone, z_mm);
+    if (const auto* sphere = std::get_if<Sphere>(&surface_)) return on_sphere(*sphere, point);
+    if (const auto* torus = std::get_if<Torus>(&surface_)) return on_torus(*torus, point);
+    return false;
+}
+
+bool Containment::holds_apex() const {
+    int winding = 0;
+    for (const LoopOutline& loop : loops_) winding += loop.winding;
+    return winding != 0;
+}
+
+bool Containment::on_cylinder(double z_mm) const {
+    int below = 0;
+    for (const LoopOutline& loop : loops_) {
+        if (loop.height_mm <= z_mm) below += loop.winding;
+    }
+    return below != 0;
+}
+
+bool Containment::on_cone(const Cone& cone, double z_mm) const {
+    const bool unbounded_above = cone.frame.z.z() > 0;
+    int winding = 0;
+    for (const LoopOutline& loop : loops_) {
+        if ((loop.height_mm > z_mm) == unbounded_above) winding += loop.winding;
+    }
+    return winding != 0;
+}
+
+bool Containment::on_sphere(const Sphere& sphere, const Point3& point) const {
+    const Point3& centre = sphere.frame.origin;
+    const Vector3 pole = (point - centre).normalized();
+    const Vector3 x = pole.unitOrthogonal(), y = pole.cross(x);
+    const double sense = same_sense_ ? 1 : -1;
+    for (const LoopOutline& loop : loops_) {
+        const auto project = [&](const Point3& p) {
+            const Vector3 ray = (p - centre).normalized();
+            return Point2(Point2(x.dot(ray), y.dot(ray)) / (1 - pole.dot(ray)));
+        };
+        double doubled_area = 0;
+        Point2 before = project(loop.points.back());
+        for (const Point3& p : loop.points) {
+            const Point2 here = project(p);
+            doubled_area += cross(before, here);
+            before = here;
+        }
+        // Seen from outside, projecting from the pole mirrors the sphere: clockwise turns counter-clockwise.
+        if (sense * doubled_area < 0) return false;
+    }
+    return true;
+}
+
+bool Containment::on_torus(const Torus& torus, const Point3& point) const {
+    const Point2 at = invert(surface_, point);
+    const double sense = (same_sense_ ? 1 : -1) * handedness(torus.frame);
+    // axis 0: along the tube at constant u; axis 1: around at constant v.
+    for (const int fixed : {0, 1}) {
+        const int along = 1 - fixed;
+        double nearest = full_turn_rad;
+        bool face_before = false, met = false;
+        for (const LoopOutline& loop : loops_) {
+            for (std::size_t i = 0; i < loop.points.size(); ++i) {
+                const UvStep step = uv_step(surface_, loop.points[i],
+                                            loop.points[(i + 1) % loop.points.size()]);
+                const double start = std::remainder(step.from[fixed] - at[fixed], full_turn_rad);
+                const double end = start + step.by[fixed];
+                if ((start <= 0) == (end <= 0)) continue;
+                const double where =
+                    step.from[along] + step.by[along] * (-start / step.by[fixed]) - at[along];
+                const double ahead = where - full_turn_rad * std::floor(where / full_turn_rad);
+                if (met && ahead >= nearest) continue;
+                nearest = ahead;
+                met = true;
+                // Left of +u is +v; left of +v is -u.
+                const double left = (fixed == 0 ? 1 : -1) * sense * step.by[fixed];
+                face_before = left < 0;
+            }
+        }
+        if (met) return face_before;
+    }
+    for (const LoopOutline& loop : loops_) {
+        double doubled_area = 0;
+        Point2 from = Point2::Zero();
+        for (std::size_t i = 0; i < loop.points.size(); ++i) {
+            const Point2 to = from + uv_step(surface_, loop.points[i],
+                                             loop.points[(i + 1) % loop.points.size()]).by;
+            doubled_area += cross(from, to);
+            from = to;
+        }
+        if (sense * doubled_area > 0) return false;
+    }
+    return true;
+}
+
+}  // namespace lyr

@@ -1,0 +1,50 @@
+// Is a closed component of a section, which no edge of the face crosses, in the face or out of it?
+//
+// Contract
+//  1. The answer is topological: it does not change as long as the component crosses no edge.
+//  2. Loops may wind around the surface, hold poles or an apex, or be missing (a whole sphere, a whole torus).
+//
+// Method, after preparing each loop once as points on the surface (dense enough that no two neighbours are an
+// eighth of a turn apart):
+//   cylinder, cone   the component is in the face if the loops on its unbounded side wind around the axis
+//   sphere           seen in stereographic projection from a point of the component, every loop of the face runs
+//                    clockwise: the point at infinity is on its left
+//   torus            the nearest loop ahead along the tube's circle, or else along the axis' circle, has the
+//                    face on the near side; with neither, every loop is a hole
+
+#pragma once
+
+#include <vector>
+
+#include "kernel/brep/model.h"
+
+namespace lyr {
+
+struct LoopOutline {
+    std::vector<Point3> points;  // closed: the first follows the last
+    double height_mm = 0;        // of any vertex: its level
+    int winding = 0;             // around the axis of a cylinder or cone
+};
+
+class Containment {
+public:
+    Containment(const Model& model, FaceId face, const std::vector<double>& vertex_level_mm);
+
+    // `point` is on the component, whose plane is at z.
+    bool holds(const Point3& point, double z_mm) const;
+
+    // Whether the face of a cone reaches its apex.
+    bool holds_apex() const;
+
+private:
+    bool on_cylinder(double z_mm) const;
+    bool on_cone(const Cone& cone, double z_mm) const;
+    bool on_sphere(const Sphere& sphere, const Point3& point) const;
+    bool on_torus(const Torus& torus, const Point3& point) const;
+
+    Surface surface_;
+    bool same_sense_;
+    std::vector<LoopOutline> loops_;
+};
+
+}  // namespace lyr

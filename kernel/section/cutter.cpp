@@ -1,0 +1,356 @@
+// One plane: stab the monotone pieces, one crossing each; hand every crossing to the faces of its edge as an enter
+// or a leave; pair and trace face by face; follow spans from crossing to crossing.
+
+#include "kernel/section/cutter.h"
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "kernel/section/face_section.h"
+#include "kernel/section/surface_section.h"
+
+namespace lyr {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+Eigen::AlignedBox3d box_of(const Model& model) {
+    Eigen::AlignedBox3d box;
+    for (const Edge& edge : model.edges) {
+        // A quarter of the way at a time: no curve of an edge strays from these by more than the edge is long.
+        for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+            box.extend(evaluate(edge.curve, edge.t_start + share * (edge.t_end - edge.t_start)));
+        }
+    }
+    for (const Face& face : model.faces) {
+        if (const auto* sphere = std::get_if<Sphere>(&face.surface)) {
+            const Vector3 reach = Vector3::Constant(sphere->radius_mm);
+            box.extend(sphere->frame.origin - reach).extend(sphere->frame.origin + reach);
+        } else if (const auto* torus = std::get_if<Torus>(&face.surface)) {
+            const Vector3 reach = Vector3::Constant(torus->major_mm + torus->minor_mm);
+            box.extend(torus->frame.origin - reach).extend(torus->frame.origin + reach);
+        }
+    }
+    return box;
+}
+
+HeightRange range_of_loops(const Model& model, const Face& face, const MonotoneEdges& edges,
+                           const std::vector<HeightRange>& edge_range) {
+    HeightRange range{infinity, -infinity};
+    for (std::uint32_t l = 0; l < face.loop_count; ++l) {
+        const Loop& loop = model.loops[face.first_loop + l];
+        for (std::uint32_t c = 0; c < loop.coedge_count; ++c) {
+            const EdgeId id = model.coedges[loop.first_coedge + c].edge;
+            const double level = edges.vertex_level_mm[model[id].start.value];
+            range.bottom_mm = std::min({range.bottom_mm, level, edge_range[id.value].bottom_mm});
+            range.top_mm = std::max({range.top_mm, level, edge_range[id.value].top_mm});
+        }
+    }
+    return range;
+}
+
+std::vector<HeightRange> edge_ranges(const Model& model, const MonotoneEdges& edges) {
+    std::vector<HeightRange> ranges(model.edges.size(), {infinity, -infinity});
+    for (const MonotonePiece& piece : edges.pieces) {
+        HeightRange& range = ranges[piece.edge.value];
+        range.bottom_mm = std::min(range.bottom_mm, piece.bottom_mm);
+        range.top_mm = std::max(range.top_mm, piece.top_mm);
+    }
+    return ranges;
+}
+
+// The heights at which a closed component of the face's surface can lie in the face; empty for surfaces whose
+// sections are never closed without meeting an edge.
+HeightRange closed_component_range(const Face& face, HeightRange loops) {
+    if (std::holds_alternative<Cylinder>(face.surface)) return loops;
+    if (const auto* cone = std::get_if<Cone>(&face.surface)) {
+        const double apex = (cone->frame.origin -
+                             cone->radius_mm / std::tan(cone->half_angle_rad) * cone->frame.z)
+                                .z();
+        return {std::min(loops.bottom_mm, apex), std::max(loops.top_mm, apex)};
+    }
+    if (const auto* sphere = std::get_if<Sphere>(&face.surface)) {
+        const double z = sphere->frame.origin.z();
+        return {z - sphere->radius_mm, z + sphere->radius_mm};
+    }
+    if (const auto* torus = std::get_if<Torus>(&face.surface)) {
+        const double lean = torus->frame.z.head<2>().norm(), z = torus->frame.origin.z();
+        const double reach = lean * torus->major_mm + torus->minor_mm;
+        return {z - reach, z + reach};
+    }
+    return {infinity, -infinity};
+}
+
+// Points where the surface is level, one on each connected set of them.
+std::vector<Point3> level_points(const Surface& surface) {
+    if (const auto* sphere = std::get_if<Sphere>(&surface)) {
+        const Vector3 up = sphere->radius_mm * Vector3::UnitZ();
+        return {sphere->frame.origin + up, sphere->frame.origin - up};
+    }
+    const auto* torus = std::get_if<Torus>(&surface);
+    if (!torus) return {};
+    const Vector3& axis = torus->frame.z;
+    const double lean = axis.head<2>().norm();
+    const Vector3 across = lean > angular_resolution_rad
+                               ? Vector3((Vector3::UnitZ() - axis.z() * axis) / lean)
+                               : axis.unitOrthogonal();
+    std::vector<Point3> points;
+    for (const double side : {1.0, -1.0}) {
+        for (const double up : {1.0, -1.0}) {
+            points.push_back(torus->frame.origin + side * torus->major_mm * across +
+                             up * torus->minor_mm * Vector3::UnitZ());
+        }
+    }
+    return points;
+}
+
+}  // namespace
+
+Cutter::Cutter(const Model& model, const Tolerance& tolerance)
+    : model_(model), tolerance_(tolerance), edges_(monotone_pieces(model)) {
+    const Eigen::AlignedBox3d box = box_of(model);
+    extent_mm_ = box.isEmpty() ? 0 : box.diagonal().norm();
+
+    std::vector<HeightInterval> pieces;
+    for (std::size_t i = 0; i < edges_.pieces.size(); ++i) {
+        const MonotonePiece& piece = edges_.pieces[i];
+        pieces.push_back({piece.bottom_mm, piece.top_mm, static_cast<std::uint32_t>(i)});
+    }
+    pieces_by_height_ = IntervalIndex(std::move(pieces));
+
+    std::vector<std::vector<Use>> uses(model.edges.size());
+    for (std::size_t f = 0; f < model.faces.size(); ++f) {
+        const Face& face = model.faces[f];
+        for (std::uint32_t l = 0; l < face.loop_count; ++l) {
+            const Loop& loop = model.loops[face.first_loop + l];
+            for (std::uint32_t c = 0; c < loop.coedge_count; ++c) {
+                const Coedge& coedge = model.coedges[loop.first_coedge + c];
+                uses[coedge.edge.value].push_back({FaceId{f}, coedge.reversed});
+            }
+        }
+    }
+    for (const auto& of_edge : uses) {
+        use_start_.push_back(static_cast<std::uint32_t>(uses_.size()));
+        uses_.insert(uses_.end(), of_edge.begin(), of_edge.end());
+    }
+    use_start_.push_back(static_cast<std::uint32_t>(uses_.size()));
+
+    const std::vector<HeightRange> ranges = edge_ranges(model, edges_);
+    std::vector<HeightInterval> closed;
+    for (std::size_t f = 0; f < model.faces.size(); ++f) {
+        const Face& face = model.faces[f];
+        const HeightRange range =
+            closed_component_range(face, range_of_loops(model, face, edges_, ranges));
+        if (!(range.bottom_mm < range.top_mm)) continue;
+        closed.push_back({range.bottom_mm, range.top_mm,
+                          static_cast<std::uint32_t>(closed_faces_.size())});
+        closed_faces_.push_back({FaceId{f}, Containment(model, FaceId{f}, edges_.vertex_level_mm)});
+    }
+    closed_faces_by_height_ = IntervalIndex(std::move(closed));
+}
+
+HeightRange Cutter::height_range() const {
+    HeightRange range{infinity, -infinity};
+    const auto extend = [&](double z) {
+        range.bottom_mm = std::min(range.bottom_mm, z);
+        range.top_mm = std::max(range.top_mm, z);
+    };
+    for (const double level : edges_.vertex_level_mm) extend(level);
+    for (const MonotonePiece& piece : edges_.pieces) {
+        extend(piece.bottom_mm);
+        extend(piece.top_mm);
+    }
+    for (const ClosedFace& closed : closed_faces_) {
+        for (const Point3& point : level_points(model_[closed.face].surface)) {
+            if (closed.containment.holds(point, point.z())) extend(point.z());
+        }
+        if (const auto* cone = std::get_if<Cone>(&model_[closed.face].surface)) {
+            const double slant = cone->radius_mm / std::tan(cone->half_angle_rad);
+            const Point3 apex = cone->frame.origin - slant * cone->frame.z;
+            // Only an apex inside a loop that winds around it is part of the face.
+            if (closed.containment.holds_apex()) extend(apex.z());
+        }
+    }
+    return range;
+}
+
+SolidId Cutter::solid_of(FaceId face) const { return model_[model_[face].shell].solid; }
+
+void Cutter::report(Work& work, std::string message, SourceId source, const Point3& point) const {
+    work.section.diagnostics.push_back({Severity::error,
+                                        ExitStatus::geometry,
+                                        std::move(message),
+                                        {.file = {},
+                                         .line = 0,
+                                         .column = 0,
+                                         .entity = source,
+                                         .layer = {},
+                                         .x_mm = point.x(),
+                                         .y_mm = point.y(),
+                                         .z_mm = work.z_mm}});
+}
+
+void Cutter::find_crossings(Work& work) const {
+    pieces_by_height_.stab(work.z_mm, [&](std::uint32_t item) {
+        const MonotonePiece& piece = edges_.pieces[item];
+        const Edge& edge = model_[piece.edge];
+        const double t = parameter_at_height(edge.curve, piece.t_bottom, piece.t_top, work.z_mm);
+        const auto index = static_cast<std::uint32_t>(work.crossings.size());
+        work.crossings.push_back({evaluate(edge.curve, t), piece.edge, piece.rising});
+        for (std::uint32_t u = use_start_[piece.edge.value]; u < use_start_[piece.edge.value + 1];
+             ++u) {
+            const bool rises = piece.rising != uses_[u].reversed;
+            work.events.push_back({uses_[u].face, index, !rises});
+        }
+    });
+    std::sort(work.events.begin(), work.events.end(), [](const Event& a, const Event& b) {
+        return std::tie(a.face, a.crossing, a.enters) < std::tie(b.face, b.crossing, b.enters);
+    });
+}
+
+void Cutter::cut_face(FaceId id, std::span<const Event> events, Work& work) const {
+    const Face& face = model_[id];
+    const SurfaceSection section =
+        section_of(face.surface, face.same_sense, work.z_mm, extent_mm_);
+    std::vector<FaceCrossing> crossings;
+    for (const Event& event : events) {
+        crossings.push_back({event.crossing, event.enters, work.crossings[event.crossing].point});
+    }
+    const FaceSpans paired = pair_crossings(section, crossings);
+    for (const Span& span : paired.spans) {
+        const Point2 start = work.crossings[span.enter].point.head<2>();
+        const Point2 end = work.crossings[span.leave].point.head<2>();
+        const auto first = static_cast<std::uint32_t>(work.segments.size());
+        if (span.component < 0) {
+            work.segments.push_back({end});
+        } else {
+            trace(section, span.component, span.from, span.to, start, end, tolerance_,
+                  work.segments);
+        }
+        const auto count = static_cast<std::uint32_t>(work.segments.size()) - first;
+        work.spans.push_back({span.enter, span.leave, first, count, solid_of(id)});
+    }
+    for (const std::uint32_t c : paired.unpaired) {
+        ++work.section.open;
+        report(work, "the face's boundary is open: edge #" +
+                         std::to_string(model_[work.crossings[c].edge].source) +
+                         " has no counterpart",
+               face.source, work.crossings[c].point);
+    }
+    if (paired.forced > 0) {
+        work.section.diagnostics.push_back(
+            {Severity::warning,
+             ExitStatus::geometry,
+             "edges lie off the face's surface: " + std::to_string(paired.forced) +
+                 " of its spans were joined by straight lines",
+             {.file = {}, .line = 0, .column = 0, .entity = face.source, .layer = {}, .z_mm = work.z_mm}});
+    }
+}
+
+void Cutter::cut_faces(Work& work) const {
+    for (std::size_t first = 0; first < work.events.size();) {
+        std::size_t last = first;
+        while (last < work.events.size() && work.events[last].face == work.events[first].face) {
+            ++last;
+        }
+        cut_face(work.events[first].face, std::span(work.events).subspan(first, last - first), work);
+        first = last;
+    }
+}
+
+void Cutter::add_whole_components(Work& work) const {
+    std::vector<std::uint32_t> candidates;
+    closed_faces_by_height_.stab(work.z_mm, [&](std::uint32_t i) { candidates.push_back(i); });
+    for (const std::uint32_t i : candidates) {
+        const FaceId id = closed_faces_[i].face;
+        const Face& face = model_[id];
+        const SurfaceSection section =
+            section_of(face.surface, face.same_sense, work.z_mm, extent_mm_);
+        if (period(section) == 0) continue;
+        std::vector<bool> crossed(static_cast<std::size_t>(component_count(section)), false);
+        const auto [first, last] =
+            std::equal_range(work.events.begin(), work.events.end(), Event{id, 0, false},
+                             [](const Event& a, const Event& b) { return a.face < b.face; });
+        for (auto event = first; event != last; ++event) {
+            const Place place = locate(section, work.crossings[event->crossing].point);
+            crossed[static_cast<std::size_t>(place.component)] = true;
+        }
+        for (std::size_t c = 0; c < crossed.size(); ++c) {
+            if (crossed[c]) continue;
+            const int component = static_cast<int>(c);
+            const Point2 on = at(section, {component, 0}).point;
+            if (!closed_faces_[i].containment.holds({on.x(), on.y(), work.z_mm}, work.z_mm)) {
+                continue;
+            }
+            work.contours.emplace_back(solid_of(id), whole_component(section, component, tolerance_));
+        }
+    }
+}
+
+void Cutter::stitch(Work& work) const {
+    // Spans by the crossing they leave from; more than one only where more than two faces meet.
+    std::sort(work.spans.begin(), work.spans.end(), [](const TracedSpan& a, const TracedSpan& b) {
+        return std::tie(a.solid, a.enter, a.leave) < std::tie(b.solid, b.enter, b.leave);
+    });
+    const auto next_of = [&](SolidId solid, std::uint32_t crossing) {
+        return std::lower_bound(work.spans.begin(), work.spans.end(), std::pair(solid, crossing),
+                                [](const TracedSpan& a, const auto& key) {
+                                    return std::pair(a.solid, a.enter) < key;
+                                }) -
+               work.spans.begin();
+    };
+    std::vector<bool> used(work.spans.size(), false);
+    for (std::size_t s = 0; s < work.spans.size(); ++s) {
+        if (used[s]) continue;
+        const std::uint32_t origin = work.spans[s].enter;
+        const SolidId solid = work.spans[s].solid;
+        Path path{work.crossings[origin].point.head<2>(), {}};
+        for (auto at_span = s;;) {
+            used[at_span] = true;
+            const TracedSpan& span = work.spans[at_span];
+            const auto from = work.segments.begin() + span.first;
+            path.segments.insert(path.segments.end(), from, from + span.count);
+            if (span.leave == origin) {
+                if (auto contour = simplified(std::move(path), tolerance_.trace_mm())) {
+                    work.contours.emplace_back(solid, std::move(*contour));
+                }
+                break;
+            }
+            auto next = static_cast<std::size_t>(next_of(solid, span.leave));
+            while (next < work.spans.size() && used[next] && work.spans[next].enter == span.leave) {
+                ++next;
+            }
+            if (next >= work.spans.size() || work.spans[next].enter != span.leave ||
+                work.spans[next].solid != solid) {
+                ++work.section.open;
+                report(work, "the contour does not close: the edge has no face on its other side",
+                       model_[work.crossings[span.leave].edge].source,
+                       work.crossings[span.leave].point);
+                break;
+            }
+            at_span = next;
+        }
+    }
+}
+
+Section Cutter::cut(double z_mm) const {
+    Work work{.z_mm = z_mm};
+    work.section.z_mm = z_mm;
+    find_crossings(work);
+    cut_faces(work);
+    stitch(work);
+    add_whole_components(work);
+    std::stable_sort(work.contours.begin(), work.contours.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (auto& [solid, contour] : work.contours) {
+        if (work.section.solids.empty() || work.section.solids.back().solid != solid) {
+            work.section.solids.push_back({solid, {}});
+        }
+        work.section.solids.back().contours.push_back(std::move(contour));
+    }
+    return std::move(work.section);
+}
+
+}  // namespace lyr

@@ -1,0 +1,107 @@
+// Cuts a model with planes z = const into closed contours of lines and arcs.
+//
+// Contract
+//  1. A Cutter holds what depends on the model only (monotone pieces, height intervals, outlines); cut() is
+//     const, touches only what its plane meets, and may run on several threads.
+//  2. Contours close by construction: every crossing of an edge is computed once and is the end of one face's span
+//     and the start of the neighbour's. What cannot close (an edge with one face) is counted in `open`, located
+//     in `diagnostics` and left out of `contours`.
+//  3. Contours have the material on the left; a solid's contours include its voids'.
+//  4. The result depends on model, height and tolerance alone.
+
+#pragma once
+
+#include <vector>
+
+#include "base/diagnostic.h"
+#include "kernel/brep/model.h"
+#include "kernel/brep/monotone.h"
+#include "kernel/contour/contour.h"
+#include "kernel/geometry/tolerance.h"
+#include "kernel/section/containment.h"
+#include "kernel/section/interval_index.h"
+
+namespace lyr {
+
+struct SolidSection {
+    SolidId solid;
+    std::vector<Contour> contours;
+};
+
+struct Section {
+    double z_mm = 0;
+    std::vector<SolidSection> solids;  // those the plane meets, in the model's order
+    std::uint32_t open = 0;            // ends that have no continuation
+    Diagnostics diagnostics;
+};
+
+struct HeightRange {
+    double bottom_mm, top_mm;
+};
+
+class Cutter {
+public:
+    // Keeps a reference to the model.
+    Cutter(const Model& model, const Tolerance& tolerance);
+
+    Section cut(double z_mm) const;
+
+    // The exact lowest and highest point of the model's faces.
+    HeightRange height_range() const;
+
+private:
+    struct Crossing {
+        Point3 point;
+        EdgeId edge;
+        bool rising;
+    };
+    struct Event {
+        FaceId face;
+        std::uint32_t crossing;
+        bool enters;
+    };
+    // The span that leaves from a crossing: its segments are [first, first + count) of Work::segments.
+    struct TracedSpan {
+        std::uint32_t enter, leave, first, count;
+        SolidId solid;
+    };
+    struct Work {
+        double z_mm = 0;
+        std::vector<Crossing> crossings{};
+        std::vector<Event> events{};
+        std::vector<TracedSpan> spans{};
+        std::vector<Segment> segments{};
+        std::vector<std::pair<SolidId, Contour>> contours{};
+        Section section{};
+    };
+
+    SolidId solid_of(FaceId face) const;
+    void find_crossings(Work& work) const;
+    void cut_face(FaceId face, std::span<const Event> events, Work& work) const;
+    void cut_faces(Work& work) const;
+    void add_whole_components(Work& work) const;
+    void stitch(Work& work) const;
+    void report(Work& work, std::string message, SourceId source, const Point3& point) const;
+
+    const Model& model_;
+    Tolerance tolerance_;
+    MonotoneEdges edges_;
+    double extent_mm_;  // no two points of the model are farther apart
+    IntervalIndex pieces_by_height_;
+    // Coedges by edge: uses_[use_start_[e] .. use_start_[e + 1]).
+    struct Use {
+        FaceId face;
+        bool reversed;
+    };
+    std::vector<Use> uses_;
+    std::vector<std::uint32_t> use_start_;
+    // Faces of which a whole component can be inside.
+    struct ClosedFace {
+        FaceId face;
+        Containment containment;
+    };
+    std::vector<ClosedFace> closed_faces_;
+    IntervalIndex closed_faces_by_height_;
+};
+
+}  // namespace lyr
