@@ -1,10 +1,10 @@
 // The one place where lengths and angles are called equal.
 //
 // The user's tolerance bounds the distance between the printed contour and the exact section. It is split:
-//   trace     an eighth   points of a traced curve off the exact one
-//   fit       half        arcs off the points' curve
-//   quantise  an eighth   coordinates rounded to the file's quantum
-// What remains (a quarter) covers a model whose edges lie off its surfaces by round-off.
+//   trace     an eighth        points of a traced curve off the exact one, arcs joined into one
+//   fit       half             fitted arcs off the curve's points
+//   quantise  three eighths    coordinates rounded to the file's quantum
+// Exact lines and arcs have no fit error; their quantisation may use that share too.
 
 #pragma once
 
@@ -15,7 +15,7 @@ struct Tolerance {
 
     constexpr double trace_mm() const { return total_mm / 8; }
     constexpr double fit_mm() const { return total_mm / 2; }
-    constexpr double quantise_mm() const { return total_mm / 8; }
+    constexpr double quantise_mm() const { return total_mm * 3 / 8; }
 };
 
 // Heights and points closer than this are one: the resolution of the model's own coordinates. STEP files
