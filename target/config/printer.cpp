@@ -1,0 +1,244 @@
+// toml++ parses; a walk over its tables looks every key up in the table of keys; what concerns several
+// keys is checked last. All errors are collected with their places, since toml++ keeps its tables
+// sorted by name and the first error in the file is the one to tell.
+
+#include "target/config/printer.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <map>
+#include <memory>
+#include <set>
+
+#include "target/config/keys.h"
+#include "target/config/nearest_name.h"
+
+namespace lyr::config {
+namespace {
+
+// A printer's file has a few kilobytes; more is some other file.
+constexpr std::size_t largest_file = std::size_t{1} << 20;
+
+struct Place {
+    std::uint32_t line = 0, column = 0;
+    auto operator<=>(const Place&) const = default;
+};
+
+Place place_of(const toml::source_region& source) {
+    return {static_cast<std::uint32_t>(source.begin.line),
+            static_cast<std::uint32_t>(source.begin.column)};
+}
+
+Diagnostic input_error(std::string message, const std::string& file, Place place = {}) {
+    Diagnostic error{Severity::error, ExitStatus::input, std::move(message), {}};
+    error.where.file = file;
+    error.where.line = place.line;
+    error.where.column = place.column;
+    return error;
+}
+
+// Reads the tables of one file into a draft.
+class Walk {
+public:
+    Walk() : keys_(printer_keys()) {
+        for (const Key& key : keys_) by_path_[key.path] = &key;
+    }
+
+    void table(const toml::table& table, const std::string& prefix);
+    void check_missing();
+    void check_lines();
+    void check_pulses();
+    // The first problem in the order of the file.
+    const std::pair<Place, std::string>* first_problem() const;
+    Draft& draft() { return draft_; }
+
+private:
+    void entry(const toml::key& name, const toml::node& node, const std::string& path);
+    void unknown(const toml::key& name, const std::string& prefix);
+    bool is_section(const std::string& path) const;
+    // Of the key, else of the innermost table around it that the file has.
+    Place place(std::string path) const;
+    void problem(Place place, std::string message) {
+        problems_.emplace_back(place, std::move(message));
+    }
+
+    std::vector<Key> keys_;
+    std::map<std::string, const Key*> by_path_;
+    std::map<std::string, Place> places_;
+    std::vector<std::pair<Place, std::string>> problems_;
+    Draft draft_;
+};
+
+bool Walk::is_section(const std::string& path) const {
+    const auto next = by_path_.lower_bound(path + '.');
+    return next != by_path_.end() && next->first.starts_with(path + '.');
+}
+
+Place Walk::place(std::string path) const {
+    for (;;) {
+        if (const auto known = places_.find(path); known != places_.end()) return known->second;
+        const std::size_t dot = path.rfind('.');
+        if (dot == std::string::npos) return {};
+        path.resize(dot);
+    }
+}
+
+void Walk::table(const toml::table& table, const std::string& prefix) {
+    for (const auto& [name, node] : table) {
+        const std::string path = prefix + std::string(name.str());
+        places_[path] = place_of(name.source());
+        const bool dotted = name.str().find('.') != std::string_view::npos;
+        if (dotted || (!by_path_.count(path) && !is_section(path)))
+            unknown(name, prefix);
+        else
+            entry(name, node, path);
+    }
+}
+
+void Walk::entry(const toml::key& name, const toml::node& node, const std::string& path) {
+    const auto known = by_path_.find(path);
+    const Key* key = known == by_path_.end() ? nullptr : known->second;
+    const toml::table* section = node.as_table();
+    if (section && is_section(path)) {
+        table(*section, path + '.');
+        if (key && !section->contains("line"))
+            problem(place_of(name.source()), path + ": expected `line`, the line's number or name");
+    } else if (!key) {
+        problem(place_of(name.source()),
+                path + ": expected a section [" + path + "], found a value");
+    } else if (const Complaint complaint = key->apply(node, draft_)) {
+        problem(place_of(node.source()), path + ": " + *complaint);
+    }
+}
+
+void Walk::unknown(const toml::key& name, const std::string& prefix) {
+    std::set<std::string> here;
+    for (const auto& [path, key] : by_path_)
+        if (path.starts_with(prefix))
+            here.insert(path.substr(prefix.size(), path.find('.', prefix.size()) - prefix.size()));
+    const std::vector<std::string> candidates(here.begin(), here.end());
+    std::string message = "unknown key `" + std::string(name.str()) + '`';
+    if (!prefix.empty()) message += " in [" + prefix.substr(0, prefix.size() - 1) + ']';
+    const std::string nearest = nearest_name(name.str(), candidates);
+    message += nearest.empty() ? "; docs/configuration.md lists the keys"
+                               : "; did you mean `" + nearest + "`?";
+    problem(place_of(name.source()), std::move(message));
+}
+
+void Walk::check_missing() {
+    for (const Key& key : keys_)
+        if (key.required && !places_.count(key.path))
+            problem(place(key.path), key.path + " is missing");
+}
+
+void Walk::check_lines() {
+    constexpr std::array<std::pair<const char*, std::optional<Pin> Axis::*>, 3> fields{
+        {{"step", &Axis::step}, {"direction", &Axis::direction}, {"enable", &Axis::enable}}};
+    std::map<std::pair<std::string, std::variant<std::uint32_t, std::string>>, std::string> users;
+    for (std::size_t i = 0; i < axis_count; ++i)
+        for (const auto& [name, field] : fields) {
+            std::optional<Pin>& pin = draft_.printer.axes[i].*field;
+            if (!pin) continue;
+            if (pin->chip.empty()) pin->chip = draft_.chip;
+            const std::string path = "axis." + std::string(axis_names[i]) + '.' + name;
+            const auto [user, fresh] = users.emplace(std::pair{pin->chip, pin->line}, path);
+            if (fresh) continue;
+            std::string message = path + ": this line is already used by " + user->second;
+            // Drivers that share an enable line are common, and one key is enough for them.
+            if (field == &Axis::enable) message += "; leave the key out here if drivers share it";
+            problem(place(path), std::move(message));
+        }
+}
+
+void Walk::check_pulses() {
+    constexpr double ns_per_s = 1e9;
+    const PulseTiming& pulse = draft_.printer.pulse;
+    const auto needed_ns = static_cast<double>(pulse.high_ns + pulse.low_ns);
+    for (std::size_t i = 0; i < axis_count; ++i) {
+        const Axis& axis = draft_.printer.axes[i];
+        const double rate_hz = axis.max_speed_mm_s * axis.steps_per_mm;
+        if (rate_hz * needed_ns <= ns_per_s) continue;
+        const std::string path = "axis." + std::string(axis_names[i]) + ".max_speed_mm_s";
+        problem(place(path), path + ": " + std::to_string(std::llround(rate_hz)) +
+                                 " steps a second leave no time for pulses of high_us + low_us = " +
+                                 std::to_string(pulse.high_ns + pulse.low_ns) + " ns");
+    }
+}
+
+const std::pair<Place, std::string>* Walk::first_problem() const {
+    // Without a place (line 0: a whole section is missing) comes last.
+    const auto order = [](const auto& a, const auto& b) {
+        return std::pair(a.first.line == 0, a.first) < std::pair(b.first.line == 0, b.first);
+    };
+    const auto first = std::min_element(problems_.begin(), problems_.end(), order);
+    return first == problems_.end() ? nullptr : &*first;
+}
+
+Result<std::string> read_text(const std::string& path) {
+    struct Close {
+        void operator()(std::FILE* file) const { std::fclose(file); }
+    };
+    const std::unique_ptr<std::FILE, Close> file(std::fopen(path.c_str(), "rbe"));
+    if (!file)
+        return input_error("cannot read the printer's file: " + std::string(std::strerror(errno)),
+                           path);
+    std::string text(largest_file + 1, '\0');
+    text.resize(std::fread(text.data(), 1, text.size(), file.get()));
+    if (std::ferror(file.get()))
+        return input_error("cannot read the printer's file: " + std::string(std::strerror(errno)),
+                           path);
+    if (text.size() > largest_file)
+        return input_error("more than 1 MiB is no printer's file", path);
+    return text;
+}
+
+}  // namespace
+
+Result<Printer> parse_printer(std::string_view text, const std::string& file) {
+    const toml::parse_result parsed = toml::parse(text, file);
+    if (!parsed)
+        return input_error(std::string(parsed.error().description()), file,
+                           place_of(parsed.error().source()));
+    Walk walk;
+    walk.table(parsed.table(), "");
+    // A mistyped key is missing too; only the slip itself is worth telling.
+    if (!walk.first_problem()) walk.check_missing();
+    walk.check_lines();
+    walk.check_pulses();
+    if (const auto* problem = walk.first_problem())
+        return input_error(problem->second, file, problem->first);
+    Printer printer = std::move(walk.draft().printer);
+    if (printer.name.empty()) printer.name = "unnamed";
+    return printer;
+}
+
+Result<Printer> read_printer(const std::string& path) {
+    const Result<std::string> text = read_text(path);
+    if (!text) return text.error();
+    return parse_printer(*text, path);
+}
+
+Printer generic_printer() {
+    constexpr double room_mm = 10'000;
+    Printer printer;
+    printer.name = "generic";
+    printer.axes[axis_x] = {80, 300, 3'000, -room_mm, room_mm, false, {}, {}, {}};
+    printer.axes[axis_y] = printer.axes[axis_x];
+    printer.axes[axis_z] = {400, 12, 200, -room_mm, room_mm, false, {}, {}, {}};
+    printer.axes[axis_e] = {400, 60, 5'000, 0, 0, false, {}, {}, {}};
+    return printer;
+}
+
+std::vector<std::string> known_keys() {
+    std::set<std::string> paths;
+    for (const Key& key : printer_keys()) {
+        std::string path = key.path;
+        if (path.starts_with("axis.")) path.replace(5, 1, "*");
+        paths.insert(path);
+    }
+    return {paths.begin(), paths.end()};
+}
+
+}  // namespace lyr::config

@@ -1,0 +1,80 @@
+// What printer.toml says about the machine: its axes, their limits and their lines. The page
+// docs/configuration.md explains every key to users.
+//
+// Contract
+//  1. What a Printer holds is within the ranges that docs/configuration.md states, whatever file it
+//     came from; numbers are finite. No step pulse at full speed is shorter than the driver needs.
+//  2. A key that is not known, stands twice, has the wrong type or is out of range is an error (status
+//     input) with file, line and column; an unknown key comes with the nearest known one. Of several
+//     errors the first in the file is given.
+//  3. A file must say of each axis what no machine shares with another: steps_per_mm, max_speed_mm_s,
+//     max_acceleration_mm_s2 and, but for the extruder, range_mm. All else has a default.
+//  4. No two lines of a Printer are the same line of the same chip.
+//  5. known_keys() lists every key that a file may have, "axis.*." standing for each axis.
+//  6. No input makes it crash.
+
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "base/diagnostic.h"
+
+namespace lyr::config {
+
+enum class Kinematics : std::uint8_t { cartesian };
+
+// Of Printer::axes.
+enum AxisNumber : std::size_t { axis_x = 0, axis_y = 1, axis_z = 2, axis_e = 3 };
+inline constexpr std::size_t axis_count = 4;
+inline constexpr std::array<std::string_view, axis_count> axis_names{"x", "y", "z", "e"};
+
+struct Pin {
+    std::string chip;
+    std::variant<std::uint32_t, std::string> line;
+    bool active_low = false;
+};
+
+struct Axis {
+    double steps_per_mm = 0;  // microsteps, as the driver counts them
+    double max_speed_mm_s = 0;
+    double max_acceleration_mm_s2 = 0;
+    double min_mm = 0, max_mm = 0;  // where the axis may go; not used for the extruder
+    bool invert = false;            // the motor is wired the other way round
+    std::optional<Pin> step, direction, enable;
+};
+
+// What the motor drivers need between edges.
+struct PulseTiming {
+    std::int64_t high_ns = 2'000;
+    std::int64_t low_ns = 2'000;
+    std::int64_t direction_setup_ns = 1'000;  // direction steady before the step's rising edge
+    std::int64_t direction_hold_ns = 1'000;   // and after it
+    std::int64_t late_limit_ns = 5'000'000;   // an edge later than this ends the print
+};
+
+struct Printer {
+    std::string name;
+    Kinematics kinematics = Kinematics::cartesian;
+    double junction_deviation_mm = 0.02;
+    std::array<double, 3> start_mm{};            // where the head stands when a print begins
+    std::optional<double> filament_diameter_mm;  // none: as the file says
+    PulseTiming pulse;
+    std::array<Axis, axis_count> axes;
+};
+
+// A middling Cartesian printer without lines and with room for any part, to simulate without a file.
+Printer generic_printer();
+
+Result<Printer> read_printer(const std::string& path);
+// `file` names the text in messages.
+Result<Printer> parse_printer(std::string_view text, const std::string& file);
+
+std::vector<std::string> known_keys();
+
+}  // namespace lyr::config
