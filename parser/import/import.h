@@ -1,0 +1,28 @@
+// From the instances of a STEP file to a boundary representation: entities, units and assemblies of
+// ISO 10303-42, -43 and -44 as AP203, AP214 and AP242 use them.
+//
+// Contract
+//  1. The model keeps the contract of kernel/brep/model.h: lengths in millimetres, angles in radians, whatever the
+//     units of the representations that the parts stand in; mixed units within an assembly included.
+//  2. Every solid is there once for each place that the assembly structure gives it (product occurrences, mapped
+//     items, nested to any depth), with its own copy of the geometry. A file without assembly structure: every
+//     solid once.
+//  3. Solids are MANIFOLD_SOLID_BREP, BREP_WITH_VOIDS and the closed shells of surface models. Each shell has one
+//     Vertex for each VERTEX_POINT and one Edge for each EDGE_CURVE.
+//  4. What belongs to a solid and is not understood is an error (status unsupported) naming the entity and its #id;
+//     what contradicts the standard (missing, cyclic, of the wrong type or size) is one too (status input). No face
+//     is ever left out.
+//  5. A surface model that does not close bounds no volume: beside solids it is a warning, alone an error.
+//     A file with no solid at all is an error (status input).
+
+#pragma once
+
+#include "base/diagnostic.h"
+#include "kernel/brep/model.h"
+#include "parser/part21/part21.h"
+
+namespace lyr::importer {
+
+Result<Model> import_model(const part21::File& file, Diagnostics& diagnostics);
+
+}  // namespace lyr::importer
