@@ -1,0 +1,88 @@
+// Times are kept as gaps from the write before, so that lateness adds to everything that follows by
+// itself and nothing ever has to be caught up.
+
+#include "target/run/executor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace lyr::run {
+namespace {
+
+// Below this share of its planned speed the head may stop dead: motors start and stop without a ramp
+// at speeds of a few mm/s.
+constexpr double rest_pace = 0.02;
+// Where steps are further apart than this, the head as good as stands.
+constexpr std::int64_t standing_ns = 20'000'000;
+
+Diagnostic too_late(std::int64_t late_ns, std::int64_t limit_ns) {
+    char text[200];
+    std::snprintf(
+        text, sizeof text,
+        "an edge came %.3f ms late (the limit is pulse.late_limit_ms = %.3f): the printer has "
+        "stopped, and its position is lost; free the processor or lower the speeds",
+        static_cast<double>(late_ns) / 1e6, static_cast<double>(limit_ns) / 1e6);
+    return {Severity::error, ExitStatus::machine, text, {}};
+}
+
+}  // namespace
+
+Result<bool> Executor::execute(std::span<const LineEvent> events) {
+    for (const LineEvent& event : events) {
+        if (!started_) start(event);
+        const std::int64_t planned_gap_ns = event.time_ns - last_event_ns_;
+        const std::optional<std::int64_t> gap_ns = paced_gap_ns(planned_gap_ns);
+        if (!gap_ns) return false;
+        const std::int64_t due_ns = last_begin_ns_ + *gap_ns;
+        const std::int64_t allowed_ns =
+            std::max(due_ns, last_end_ns_ + std::min(*gap_ns, timing_.edge_gap_ns));
+        const std::optional<std::int64_t> begin_ns = wait_until_ns(allowed_ns);
+        if (!begin_ns) return false;
+        const std::int64_t late_ns = *begin_ns - due_ns;
+        worst_late_ns_ = std::max(worst_late_ns_, late_ns);
+        stretched_ns_ += late_ns;
+        if (late_ns > timing_.late_limit_ns) return too_late(late_ns, timing_.late_limit_ns);
+        if (Status written = write(event, *begin_ns); !written) return written.error();
+    }
+    return true;
+}
+
+void Executor::start(const LineEvent& event) {
+    started_ = true;
+    last_event_ns_ = event.time_ns;
+    last_begin_ns_ = last_end_ns_ = clock_.now_ns();
+}
+
+std::optional<std::int64_t> Executor::paced_gap_ns(std::int64_t gap_ns) {
+    const int requests = stop_requests_.load(std::memory_order_relaxed);
+    if (requests == 0) return gap_ns;
+    const bool pulse_out = (levels_ & all_step_bits) != 0;
+    const bool at_rest = requests > 1 || pace_ <= rest_pace || gap_ns > standing_ns;
+    if (at_rest) return pulse_out ? std::optional(gap_ns) : std::nullopt;
+    const double paced_ns = static_cast<double>(gap_ns) / pace_;
+    pace_ -= paced_ns / static_cast<double>(std::max<std::int64_t>(1, timing_.braking_ns));
+    pace_ = std::max(pace_, rest_pace);
+    return std::llround(paced_ns);
+}
+
+std::optional<std::int64_t> Executor::wait_until_ns(std::int64_t time_ns) {
+    std::int64_t now_ns = last_end_ns_;
+    while (time_ns - now_ns > wait_slice_ns) {
+        if (stop_requests_.load(std::memory_order_relaxed) != 0) return std::nullopt;
+        now_ns = clock_.wait_until_ns(now_ns + wait_slice_ns);
+    }
+    return clock_.wait_until_ns(time_ns);
+}
+
+Status Executor::write(const LineEvent& event, std::int64_t begin_ns) {
+    Status written = chip_.write(levels_ ^ event.levels, event.levels);
+    last_begin_ns_ = begin_ns;
+    last_end_ns_ = clock_.now_ns();
+    last_event_ns_ = event.time_ns;
+    levels_ = event.levels;
+    ++writes_;
+    return written;
+}
+
+}  // namespace lyr::run

@@ -1,0 +1,84 @@
+// Writes line events at their times: the one part of a print that runs on the real-time thread. The
+// same code serves a board (real clock, real lines) and the simulator (virtual clock, mock lines).
+//
+// Contract
+//  1. Every event is written once, in order, never before its time. The time base starts with the first
+//     event, at the moment when execute() is first called.
+//  2. A late event delays all that follow: the time between two writes is never less than between
+//     their events. No event is left out to catch up.
+//  3. A write that takes long counts as late too: from the end of one write to the begin of a later
+//     one there is at least the time between their events, or edge_gap_ns if that is less. So the times
+//     of pulses and direction lines hold in any weather.
+//  4. An event that comes later than late_limit_ns ends the print with a diagnostic (status machine).
+//  5. After a first request to stop, time is stretched more and more, so that the head comes to rest on
+//     its path within about braking_ns and no axis loses steps; then execute() returns false. A second
+//     request stops after the pulse that is out. A long wait is left within wait_slice_ns.
+//  6. A failed write ends the print with its diagnostic.
+//  7. Nothing is allocated, locked or logged, and no call is made but wait and write.
+
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "target/gpio/clock.h"
+#include "target/gpio/gpio_chip.h"
+#include "target/run/pulse_schedule.h"
+
+namespace lyr::run {
+
+struct ExecutorTiming {
+    std::int64_t edge_gap_ns = 0;  // the longest time that a driver needs between two edges
+    std::int64_t late_limit_ns = 0;
+    std::int64_t braking_ns = 0;  // from full speed to rest
+};
+
+// Requests to stop so far; a signal handler counts it up.
+using StopRequests = std::atomic<int>;
+static_assert(StopRequests::is_always_lock_free);
+
+class Executor {
+public:
+    static constexpr std::int64_t wait_slice_ns = 50'000'000;
+
+    Executor(gpio::GpioChip& chip, gpio::Clock& clock, ExecutorTiming timing,
+             const StopRequests& stop_requests)
+        : chip_(chip), clock_(clock), timing_(timing), stop_requests_(stop_requests) {}
+
+    // True: all written. False: stopped on request; what is left of the events must not be written.
+    Result<bool> execute(std::span<const LineEvent> events);
+
+    // Of the event written last, on the time base of the events.
+    std::int64_t time_ns() const { return last_event_ns_; }
+    // How much longer the print has taken than its events say; braking is not counted.
+    std::int64_t stretched_ns() const { return stretched_ns_; }
+    std::int64_t worst_late_ns() const { return worst_late_ns_; }
+    std::uint64_t writes() const { return writes_; }
+
+private:
+    void start(const LineEvent& event);
+    // Clock time between the last event and one `gap_ns` after it, longer while braking; none if the
+    // head is at rest and shall stay there.
+    std::optional<std::int64_t> paced_gap_ns(std::int64_t gap_ns);
+    // The time after the wait, or none if it was left on request.
+    std::optional<std::int64_t> wait_until_ns(std::int64_t time_ns);
+    Status write(const LineEvent& event, std::int64_t begin_ns);
+
+    gpio::GpioChip& chip_;
+    gpio::Clock& clock_;
+    ExecutorTiming timing_;
+    const StopRequests& stop_requests_;
+    bool started_ = false;
+    gpio::LineMask levels_ = 0;
+    std::int64_t last_event_ns_ = 0;
+    std::int64_t last_begin_ns_ = 0;  // of the last write, on the clock
+    std::int64_t last_end_ns_ = 0;
+    double pace_ = 1;  // of time while braking: 1 full speed, 0 rest
+    std::int64_t stretched_ns_ = 0;
+    std::int64_t worst_late_ns_ = 0;
+    std::uint64_t writes_ = 0;
+};
+
+}  // namespace lyr::run

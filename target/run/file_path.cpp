@@ -1,0 +1,168 @@
+// Each operation appends its curves to a short queue, which next() hands out.
+
+#include "target/run/file_path.h"
+
+#include <cmath>
+#include <numbers>
+#include <variant>
+
+namespace lyr::run {
+namespace {
+
+using config::axis_e;
+using config::axis_x;
+using config::axis_y;
+using config::axis_z;
+
+constexpr double pi = std::numbers::pi;
+
+double length_mm(const PathCurve& curve) {
+    const double rise = curve.to_mm[axis_z] - curve.from_mm[axis_z];
+    const double flat = curve.is_arc ? curve.radius_mm * std::abs(curve.sweep_rad)
+                                     : std::hypot(curve.to_mm[axis_x] - curve.from_mm[axis_x],
+                                                  curve.to_mm[axis_y] - curve.from_mm[axis_y]);
+    return std::hypot(flat, rise);
+}
+
+}  // namespace
+
+FilePath::FilePath(format::Reader reader, const std::array<double, 3>& start_mm,
+                   double filament_diameter_mm)
+    : reader_(std::move(reader)),
+      quantum_(reader_.header().quantum),
+      filament_area_mm2_(pi / 4 * filament_diameter_mm * filament_diameter_mm) {
+    for (std::size_t i = 0; i < start_mm.size(); ++i) at_mm_[i] = start_mm[i];
+}
+
+Result<bool> FilePath::next(PathCurve& curve) {
+    while (waiting_from_ == waiting_to_) {
+        waiting_from_ = waiting_to_ = 0;
+        const Result<std::optional<format::Operation>> operation = reader_.next();
+        if (!operation) return operation.error();
+        if (!*operation) return false;
+        std::visit([this](const auto& what) { visit(what); }, **operation);
+    }
+    curve = waiting_[waiting_from_++];
+    return true;
+}
+
+// z first on the way up and last on the way down, so that the head never cuts through the print.
+void FilePath::visit(const format::LayerStart& layer) {
+    ++totals_.layers;
+    const double drawn_back_mm = reader_.layer().state.retracted_mm;
+    if (first_layer_) drawn_back_mm_ = drawn_back_mm;
+    first_layer_ = false;
+    draw_back(drawn_back_mm);
+    const AxisValues start_mm = position(layer.start);
+    AxisValues corner_mm = at_mm_;
+    if (start_mm[axis_z] > at_mm_[axis_z])
+        corner_mm[axis_z] = start_mm[axis_z];
+    else
+        corner_mm[axis_x] = start_mm[axis_x], corner_mm[axis_y] = start_mm[axis_y];
+    straight(corner_mm, false);
+    straight(start_mm, false);
+}
+
+void FilePath::visit(const format::Line& line) {
+    straight(position(line.to), true);
+}
+
+void FilePath::visit(const format::Travel& travel) {
+    straight(position(travel.to), false);
+}
+
+void FilePath::visit(const format::Retract& retract) {
+    draw_back(retract.depth_mm);
+}
+
+// Through the ends and the middle of the arc, which lies off the chord's middle by the sagitta, to the
+// right of the way if that is positive.
+void FilePath::visit(const format::Arc& arc) {
+    const double quantum_mm = quantum_.mm(1);
+    const double dx = at_mm_[axis_x], dy = at_mm_[axis_y];
+    const double bx = static_cast<double>(arc.to.x - arc.from.x) * quantum_mm;
+    const double by = static_cast<double>(arc.to.y - arc.from.y) * quantum_mm;
+    const double chord_mm = std::hypot(bx, by);
+    const double sagitta_mm = static_cast<double>(arc.sagitta) * quantum_mm;
+    const double mx = bx / 2 + sagitta_mm * by / chord_mm;
+    const double my = by / 2 - sagitta_mm * bx / chord_mm;
+    // Circumcentre of the triangle (0, 0), (bx, by), (mx, my).
+    const double twice_area = 2 * (bx * my - by * mx);
+    const double b2 = bx * bx + by * by, m2 = mx * mx + my * my;
+    const double cx = (my * b2 - by * m2) / twice_area;
+    const double cy = (bx * m2 - mx * b2) / twice_area;
+    PathCurve curve;
+    curve.is_arc = true;
+    curve.center_x_mm = dx + cx;
+    curve.center_y_mm = dy + cy;
+    curve.radius_mm = std::hypot(cx, cy);
+    curve.start_angle_rad = std::atan2(-cy, -cx);
+    double sweep_rad = std::atan2(by - cy, bx - cx) - curve.start_angle_rad;
+    if (arc.sagitta > 0 && sweep_rad <= 0) sweep_rad += 2 * pi;
+    if (arc.sagitta < 0 && sweep_rad >= 0) sweep_rad -= 2 * pi;
+    curve.sweep_rad = sweep_rad;
+    turn(curve, arc.to);
+}
+
+void FilePath::visit(const format::Circle& circle) {
+    PathCurve curve;
+    curve.is_arc = true;
+    curve.center_x_mm = quantum_.mm(circle.center_x);
+    curve.center_y_mm = quantum_.mm(circle.center_y);
+    const double rx = at_mm_[axis_x] - curve.center_x_mm, ry = at_mm_[axis_y] - curve.center_y_mm;
+    curve.radius_mm = std::hypot(rx, ry);
+    curve.start_angle_rad = std::atan2(ry, rx);
+    curve.sweep_rad = circle.counter_clockwise ? 2 * pi : -2 * pi;
+    turn(curve, circle.to);
+}
+
+AxisValues FilePath::position(const format::Point& point) const {
+    return {quantum_.mm(point.x), quantum_.mm(point.y), quantum_.mm(point.z), at_mm_[axis_e]};
+}
+
+void FilePath::draw_back(double depth_mm) {
+    AxisValues to_mm = at_mm_;
+    to_mm[axis_e] -= depth_mm - drawn_back_mm_;
+    drawn_back_mm_ = depth_mm;
+    if (to_mm == at_mm_) return;
+    PathCurve curve;
+    curve.to_mm = to_mm;
+    append(curve);
+}
+
+void FilePath::straight(const AxisValues& to_mm, bool extrudes) {
+    if (to_mm == at_mm_) return;
+    PathCurve curve;
+    curve.from_mm = at_mm_;
+    curve.to_mm = to_mm;
+    const double way_mm = length_mm(curve);
+    (extrudes ? totals_.extruded_mm : totals_.travelled_mm) += way_mm;
+    if (extrudes) curve.to_mm[axis_e] += filament_mm(way_mm);
+    if (extrudes) totals_.filament_mm += filament_mm(way_mm);
+    append(curve);
+}
+
+void FilePath::turn(PathCurve curve, const format::Point& to) {
+    curve.from_mm = at_mm_;
+    curve.to_mm = position(to);
+    const double way_mm = length_mm(curve);
+    totals_.extruded_mm += way_mm;
+    totals_.filament_mm += filament_mm(way_mm);
+    curve.to_mm[axis_e] += filament_mm(way_mm);
+    append(curve);
+}
+
+void FilePath::append(const PathCurve& curve) {
+    PathCurve& next = waiting_[waiting_to_++];
+    next = curve;
+    next.from_mm = at_mm_;
+    next.layer = totals_.layers - 1;
+    at_mm_ = next.to_mm;
+    ++totals_.motions;
+}
+
+double FilePath::filament_mm(double length_mm) const {
+    return length_mm * format::cross_section_mm2(reader_.path()) / filament_area_mm2_;
+}
+
+}  // namespace lyr::run

@@ -1,0 +1,64 @@
+// The path that a .lyr file describes, as curves in the machine's own axes, for checking what was made
+// of it. Reads the file by itself and shares no code with the interpreter that feeds the planner: the
+// circle of an arc is drawn through its three points here, and the filament is added up here.
+//
+// Contract
+//  1. Curves follow each other without gaps from `start_mm` on; motions of no length are left out.
+//  2. The extruder's coordinate is the length of filament fed since the start, less what is drawn back.
+
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "format/reader.h"
+#include "target/run/path_check.h"
+
+namespace lyr::run {
+
+struct PathTotals {
+    double extruded_mm = 0;  // of the head's way
+    double travelled_mm = 0;
+    double filament_mm = 0;  // fed for extrusion, retraction not counted
+    std::uint32_t layers = 0;
+    std::uint64_t motions = 0;
+};
+
+class FilePath {
+public:
+    FilePath(format::Reader reader, const std::array<double, 3>& start_mm,
+             double filament_diameter_mm);
+
+    // The next curve, or false at the end; then `curve` is as it was.
+    Result<bool> next(PathCurve& curve);
+    const PathTotals& totals() const { return totals_; }
+
+private:
+    void visit(const format::LayerStart& layer);
+    void visit(const format::Line& line);
+    void visit(const format::Arc& arc);
+    void visit(const format::Circle& circle);
+    void visit(const format::Travel& travel);
+    void visit(const format::Retract& retract);
+    template <class Other>
+    void visit(const Other&) {}
+
+    AxisValues position(const format::Point& point) const;
+    void draw_back(double depth_mm);
+    void straight(const AxisValues& to_mm, bool extrudes);
+    void turn(PathCurve curve, const format::Point& to);
+    void append(const PathCurve& curve);
+    double filament_mm(double length_mm) const;
+
+    format::Reader reader_;
+    format::Quantum quantum_;
+    double filament_area_mm2_;
+    AxisValues at_mm_{};
+    double drawn_back_mm_ = 0;
+    bool first_layer_ = true;
+    PathTotals totals_;
+    std::array<PathCurve, 4> waiting_;  // one operation makes no more
+    std::size_t waiting_from_ = 0, waiting_to_ = 0;
+};
+
+}  // namespace lyr::run

@@ -1,0 +1,44 @@
+// Which bit of the line mask is which line of which axis. The same for a board, a simulation and a
+// trace.
+//
+// Contract
+//  1. Axis a has its step line at bit 2a and its direction line at bit 2a + 1; the enable lines that
+//     the printer has follow in the order of the axes.
+//  2. `names` has one name a line, such as "x.step".
+//  3. line_requests() fails (status machine) with the key that is missing if an axis has no step or no
+//     direction line.
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "target/config/printer.h"
+#include "target/gpio/gpio_chip.h"
+
+namespace lyr::run {
+
+constexpr gpio::LineMask step_bit(std::size_t axis) {
+    return gpio::line_bit(2 * axis);
+}
+constexpr gpio::LineMask direction_bit(std::size_t axis) {
+    return gpio::line_bit(2 * axis + 1);
+}
+
+inline constexpr gpio::LineMask all_step_bits = [] {
+    gpio::LineMask bits = 0;
+    for (std::size_t i = 0; i < config::axis_count; ++i) bits |= step_bit(i);
+    return bits;
+}();
+inline constexpr gpio::LineMask all_direction_bits = all_step_bits << 1;
+
+struct LineLayout {
+    std::vector<std::string> names;
+    gpio::LineMask enable = 0;
+};
+
+LineLayout line_layout(const config::Printer& printer);
+
+Result<std::vector<gpio::LineRequest>> line_requests(const config::Printer& printer);
+
+}  // namespace lyr::run

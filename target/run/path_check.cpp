@@ -1,0 +1,145 @@
+// A crossing on an arc is found in closed form: the coordinate is a cosine of the angle.
+
+#include "target/run/path_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+namespace lyr::run {
+namespace {
+
+using config::axis_count;
+using config::axis_e;
+using config::axis_x;
+using config::axis_y;
+
+constexpr double pi = std::numbers::pi;
+
+// The first share from `share` on at which the axis is at `middle_mm` or beyond in the direction asked
+// for, less the slack.
+struct Crossing {
+    const PathCurve& curve;
+    std::size_t axis;
+    double middle_mm, slack_mm;
+    double sign;  // +1: upwards
+
+    double ahead(double at_mm) const { return sign * (at_mm - middle_mm); }
+
+    std::optional<double> on_line(double share) const {
+        const double change = curve.to_mm[axis] - curve.from_mm[axis];
+        if (ahead(curve.to_mm[axis]) < -slack_mm || sign * change <= 0) return std::nullopt;
+        return std::clamp((middle_mm - curve.from_mm[axis]) / change, share, 1.0);
+    }
+
+    std::optional<double> on_arc(double share) const {
+        const double center = axis == axis_x ? curve.center_x_mm : curve.center_y_mm;
+        double reach = sign * (middle_mm - center) / curve.radius_mm;
+        if (reach > 1 && (reach - 1) * curve.radius_mm <= slack_mm) reach = 1;
+        if (reach > 1) return std::nullopt;
+        // Turned so that "far enough" is cos(turned) >= reach, and time runs towards larger angles.
+        const double angle = curve.start_angle_rad + curve.sweep_rad * share -
+                             (axis == axis_y ? pi / 2 : 0) + (sign < 0 ? pi : 0);
+        const double turned = curve.sweep_rad < 0 ? -angle : angle;
+        const double half_width = std::acos(std::max(reach, -1.0));
+        const double turns = std::ceil((turned + half_width) / (2 * pi));
+        const double entry = 2 * pi * turns - half_width;
+        const double at = share + (entry - turned) / std::abs(curve.sweep_rad);
+        if (at <= 1) return at;
+        return ahead(curve.to_mm[axis]) >= -slack_mm ? std::optional(1.0) : std::nullopt;
+    }
+
+    std::optional<double> from(double share) const {
+        if (ahead(curve.at(share)[axis]) >= -slack_mm) return share;
+        return curve.is_arc && axis <= axis_y ? on_arc(share) : on_line(share);
+    }
+};
+
+}  // namespace
+
+AxisValues PathCurve::at(double share) const {
+    AxisValues point;
+    for (std::size_t i = 0; i < axis_count; ++i)
+        point[i] = from_mm[i] + share * (to_mm[i] - from_mm[i]);
+    if (!is_arc) return point;
+    const double angle = start_angle_rad + share * sweep_rad;
+    point[axis_x] = center_x_mm + radius_mm * std::cos(angle);
+    point[axis_y] = center_y_mm + radius_mm * std::sin(angle);
+    return point;
+}
+
+PathCheck::PathCheck(const AxisValues& steps_per_mm, const AxisValues& origin_mm,
+                     CurveSource source)
+    : steps_per_mm_(steps_per_mm), origin_mm_(origin_mm), source_(std::move(source)) {
+    // Where the head stands before the file's first motion.
+    curve_.from_mm = curve_.to_mm = origin_mm;
+}
+
+void PathCheck::step(const DecodedStep& step) {
+    if (lost()) return;
+    const double sign = step.positive ? 1 : -1;
+    const auto before = static_cast<double>(step.before[step.axis]);
+    const double middle_mm = position_mm(step.axis, before + sign / 2);
+    const double slack_mm = tie_steps / steps_per_mm_[step.axis];
+    for (;;) {
+        const Crossing crossing{curve_, step.axis, middle_mm, slack_mm, sign};
+        const std::optional<double> share = crossing.from(share_);
+        follow_to(share.value_or(1.0), step.before);
+        if (share || lost()) break;
+        if (!next_curve()) break;
+    }
+    // The point where the step was due belongs to the new position too.
+    StepPositions after = step.before;
+    after[step.axis] += step.positive ? 1 : -1;
+    measure(curve_.at(share_), after);
+}
+
+void PathCheck::finish(const StepPositions& positions) {
+    if (lost()) return;
+    do follow_to(1.0, positions);
+    while (!lost() && next_curve());
+}
+
+bool PathCheck::next_curve() {
+    if (ended_) return false;
+    const Result<bool> more = source_(curve_);
+    if (!more) status_ = more.error();
+    ended_ = !more || !*more;
+    share_ = ended_ ? 1 : 0;
+    return !ended_;
+}
+
+void PathCheck::follow_to(double share, const StepPositions& positions) {
+    if (curve_.is_arc) {
+        // Multiples of a quarter turn strictly inside are the turning points of x and y.
+        const double from = (curve_.start_angle_rad + curve_.sweep_rad * share_) / (pi / 2);
+        const double to = (curve_.start_angle_rad + curve_.sweep_rad * share) / (pi / 2);
+        const double low = std::min(from, to), high = std::max(from, to);
+        for (double quarter = std::floor(low) + 1; quarter < high; ++quarter) {
+            const double angle = quarter * (pi / 2);
+            measure(curve_.at((angle - curve_.start_angle_rad) / curve_.sweep_rad), positions);
+        }
+    }
+    share_ = share;
+    measure(curve_.at(share), positions);
+}
+
+void PathCheck::measure(const AxisValues& at_mm, const StepPositions& positions) {
+    double squared_mm2 = 0;
+    for (std::size_t i = 0; i < axis_count; ++i) {
+        const double off_mm =
+            std::abs(at_mm[i] - position_mm(i, static_cast<double>(positions[i])));
+        const double off_steps = off_mm * steps_per_mm_[i];
+        deviation_.steps[i] = std::max(deviation_.steps[i], off_steps);
+        if (i != axis_e) squared_mm2 += off_mm * off_mm;
+        if (off_steps <= deviation_.worst_steps) continue;
+        deviation_.worst_steps = off_steps;
+        deviation_.worst_axis = i;
+        deviation_.worst_layer = curve_.layer;
+        deviation_.worst_at_mm = at_mm;
+    }
+    deviation_.distance_mm = std::max(deviation_.distance_mm, std::sqrt(squared_mm2));
+}
+
+}  // namespace lyr::run

@@ -1,0 +1,95 @@
+// Lays the staircase of positions that the pulses make over the curves of the file, and measures how
+// far apart they get. Time plays no part in it: this judges the shape that is drawn, on all axes, the
+// extruder included, and shares no code with the planner.
+//
+// Method. While the staircase stands at a lattice position, the curve should run within half a step of
+// it on every axis, until it passes the middle to the next position; there the staircase steps. So for
+// each step the curve is followed from where it was left to the first point at which the stepping axis
+// passes the middle, and the distances met on the way, turning points of arcs included, are the
+// deviation. The curve is only ever followed forwards, so that order and direction are judged too.
+//
+// Contract
+//  1. The deviation of an axis is the largest distance, in its steps, between the position and the point
+//     of the curve that belongs to it, at every step and between steps. A perfect train of pulses
+//     deviates by exactly half a step.
+//  2. Steps that are missing, too many, of the wrong axis or direction, or in an order that no motion
+//     along the curve gives, show as a deviation of more than half a step.
+//  3. Steps that pass their middles within `tie_steps` of each other may come in either order.
+//  4. Once the deviation exceeds `lost_steps`, following ends; lost() tells.
+
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+
+#include "base/diagnostic.h"
+#include "target/run/pulse_decoder.h"
+
+namespace lyr::run {
+
+using AxisValues = std::array<double, config::axis_count>;
+
+// A piece of the file's path: straight on all axes, or an arc in x and y (z and e then even along it).
+struct PathCurve {
+    AxisValues from_mm{}, to_mm{};
+    bool is_arc = false;
+    double center_x_mm = 0, center_y_mm = 0, radius_mm = 0;
+    double start_angle_rad = 0, sweep_rad = 0;  // counter-clockwise positive
+    std::uint32_t layer = 0;
+
+    // At a share of its length, 0..1.
+    AxisValues at(double share) const;
+};
+
+// The next piece, or false at the end of the file.
+using CurveSource = std::function<Result<bool>(PathCurve&)>;
+
+// The worst that was met, and where.
+struct Deviation {
+    AxisValues steps{};      // of each axis
+    double distance_mm = 0;  // in space, x y z together
+    double worst_steps = 0;  // of all axes
+    std::size_t worst_axis = 0;
+    std::uint32_t worst_layer = 0;
+    AxisValues worst_at_mm{};
+};
+
+class PathCheck {
+public:
+    // Steps of different axes that are this close on the curve count as simultaneous: pulses carry whole
+    // nanoseconds, in which an axis at the highest step rates moves by up to so much.
+    static constexpr double tie_steps = 1e-3;
+    static constexpr double lost_steps = 16;
+
+    // Position 0 of the decoder is at origin_mm.
+    PathCheck(const AxisValues& steps_per_mm, const AxisValues& origin_mm, CurveSource source);
+
+    void step(const DecodedStep& step);
+    // The rest of the file's path, against the last position.
+    void finish(const StepPositions& positions);
+
+    const Deviation& deviation() const { return deviation_; }
+    bool lost() const { return deviation_.worst_steps > lost_steps; }
+    // Reading the file failed.
+    const Status& status() const { return status_; }
+
+private:
+    bool next_curve();
+    void follow_to(double share, const StepPositions& positions);
+    void measure(const AxisValues& at_mm, const StepPositions& positions);
+    double position_mm(std::size_t axis, double steps) const {
+        return origin_mm_[axis] + steps / steps_per_mm_[axis];
+    }
+
+    AxisValues steps_per_mm_, origin_mm_;
+    CurveSource source_;
+    PathCurve curve_;
+    double share_ = 1;  // of the curve, up to which it was followed
+    bool ended_ = false;
+    Deviation deviation_;
+    Status status_ = Done{};
+};
+
+}  // namespace lyr::run

@@ -1,0 +1,75 @@
+// A step's direction edge may lie before edges of other axes that are known already, by no more than
+// the set-up time. So edges wait in a short sorted list until the steps are that much further.
+
+#include "target/run/pulse_schedule.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace lyr::run {
+namespace {
+
+// Before the first step of an axis nothing of it has happened for a long time.
+constexpr std::int64_t long_ago_ns = -3'600'000'000'000;
+
+}  // namespace
+
+PulseSchedule::PulseSchedule(const config::PulseTiming& timing, gpio::LineMask idle)
+    : timing_(timing), levels_(idle) {
+    axes_.fill({long_ago_ns, long_ago_ns, false});
+    open_.reserve(6 * config::axis_count);
+}
+
+void PulseSchedule::append(std::span<const Step> steps, std::vector<LineEvent>& events) {
+    for (const Step& next : steps) step(next, events);
+}
+
+void PulseSchedule::step(const Step& step, std::vector<LineEvent>& events) {
+    AxisState& axis = axes_[step.axis];
+    const std::int64_t wanted_ns = step.time_ns + shift_ns_;
+    std::int64_t rise_ns = std::max(wanted_ns, axis.fall_ns + timing_.low_ns);
+    if (step.positive != axis.positive) {
+        const std::int64_t turn_ns = std::max(rise_ns - timing_.direction_setup_ns,
+                                              axis.rise_ns + timing_.direction_hold_ns);
+        rise_ns = std::max(rise_ns, turn_ns + timing_.direction_setup_ns);
+        insert(turn_ns, direction_bit(step.axis));
+        axis.positive = step.positive;
+    }
+    if (rise_ns > wanted_ns) {
+        shift_ns_ += rise_ns - wanted_ns;
+        shifts_.push_back({rise_ns, shift_ns_});
+    }
+    axis.rise_ns = rise_ns;
+    axis.fall_ns = rise_ns + timing_.high_ns;
+    insert(axis.rise_ns, step_bit(step.axis));
+    insert(axis.fall_ns, step_bit(step.axis));
+    emit_before(rise_ns - timing_.direction_setup_ns, events);
+}
+
+void PulseSchedule::insert(std::int64_t time_ns, gpio::LineMask toggled) {
+    auto place = open_.end();
+    while (place != open_.begin() && std::prev(place)->time_ns > time_ns) --place;
+    if (place != open_.begin() && std::prev(place)->time_ns == time_ns)
+        std::prev(place)->toggled ^= toggled;
+    else
+        open_.insert(place, {time_ns, toggled});
+}
+
+void PulseSchedule::emit_before(std::int64_t time_ns, std::vector<LineEvent>& events) {
+    auto edge = open_.begin();
+    for (; edge != open_.end() && edge->time_ns < time_ns; ++edge) {
+        levels_ ^= edge->toggled;
+        events.push_back({edge->time_ns, levels_});
+    }
+    open_.erase(open_.begin(), edge);
+}
+
+void PulseSchedule::finish(std::vector<LineEvent>& events) {
+    if (!open_.empty()) emit_before(open_.back().time_ns + 1, events);
+}
+
+std::vector<Shift> PulseSchedule::take_shifts() {
+    return std::exchange(shifts_, {});
+}
+
+}  // namespace lyr::run

@@ -1,0 +1,81 @@
+// Turns steps into edges: each step becomes a pulse on the axis's step line, and a change of direction
+// an edge on the direction line before it, all with the times that the motor driver needs.
+//
+// Contract
+//  1. A step at time t becomes a rising edge at t + shift and a falling one high_ns later. The order of
+//     steps is kept, and no step is dropped or doubled.
+//  2. On one axis a step line stays low for at least low_ns between pulses; a direction line is steady
+//     from direction_setup_ns before a rising edge to direction_hold_ns after it.
+//  3. The shift grows by what a step must be delayed for 2 and then delays everything after it, on all
+//     axes alike, so that the path keeps its shape. It never shrinks. Every growth is listed.
+//  4. Events come out in order of time, one for all edges of the same nanosecond. Each carries the
+//     levels of all lines.
+
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "target/config/printer.h"
+#include "target/gpio/gpio_chip.h"
+#include "target/run/line_layout.h"
+
+namespace lyr::run {
+
+struct Step {
+    std::int64_t time_ns = 0;
+    std::uint8_t axis = 0;
+    bool positive = true;
+};
+
+// At its time all lines have these levels.
+struct LineEvent {
+    std::int64_t time_ns = 0;
+    gpio::LineMask levels = 0;
+};
+
+// From here on (in time of the events) events are so much later than the steps were asked for.
+struct Shift {
+    std::int64_t from_ns = 0;
+    std::int64_t shift_ns = 0;
+};
+
+class PulseSchedule {
+public:
+    // `idle` are the levels of all other lines, such as enable.
+    PulseSchedule(const config::PulseTiming& timing, gpio::LineMask idle);
+
+    // Steps in order of time, from all axes together. What is certain by then is appended to `events`.
+    void append(std::span<const Step> steps, std::vector<LineEvent>& events);
+    // What is still open. The next steps must not be earlier than the end of the last pulse.
+    void finish(std::vector<LineEvent>& events);
+
+    std::int64_t shift_ns() const { return shift_ns_; }
+    // Growths of the shift since the last call.
+    std::vector<Shift> take_shifts();
+
+private:
+    struct Edge {
+        std::int64_t time_ns;
+        gpio::LineMask toggled;
+    };
+    struct AxisState {
+        std::int64_t rise_ns, fall_ns;
+        bool positive;
+    };
+
+    void step(const Step& step, std::vector<LineEvent>& events);
+    void insert(std::int64_t time_ns, gpio::LineMask toggled);
+    void emit_before(std::int64_t time_ns, std::vector<LineEvent>& events);
+
+    config::PulseTiming timing_;
+    gpio::LineMask levels_;
+    std::int64_t shift_ns_ = 0;
+    std::array<AxisState, config::axis_count> axes_;
+    std::vector<Edge> open_;  // in order of time; a few edges an axis at most
+    std::vector<Shift> shifts_;
+};
+
+}  // namespace lyr::run
