@@ -88,6 +88,14 @@ struct Model {
     const Face& operator[](FaceId id) const { return faces[id.value]; }
     const Shell& operator[](ShellId id) const { return shells[id.value]; }
     const Solid& operator[](SolidId id) const { return solids[id.value]; }
+
+    // The vertices of a coedge, in the loop's direction.
+    VertexId start_of(const Coedge& coedge) const {
+        return coedge.reversed ? (*this)[coedge.edge].end : (*this)[coedge.edge].start;
+    }
+    VertexId end_of(const Coedge& coedge) const {
+        return coedge.reversed ? (*this)[coedge.edge].start : (*this)[coedge.edge].end;
+    }
 };
 
 }  // namespace lyr

@@ -5,14 +5,6 @@
 namespace lyr {
 namespace {
 
-VertexId start_of(const Model& model, const Coedge& coedge) {
-    return coedge.reversed ? model[coedge.edge].end : model[coedge.edge].start;
-}
-
-VertexId end_of(const Model& model, const Coedge& coedge) {
-    return coedge.reversed ? model[coedge.edge].start : model[coedge.edge].end;
-}
-
 Diagnostic warning(std::string message, SourceId source, const Point3& point) {
     return {Severity::warning,
             ExitStatus::geometry,
@@ -66,10 +58,10 @@ Diagnostics validate(const Model& model) {
         for (std::uint32_t c = 0; c < loop.coedge_count; ++c) {
             const Coedge& here = model.coedges[loop.first_coedge + c];
             const Coedge& next = model.coedges[loop.first_coedge + (c + 1) % loop.coedge_count];
-            if (end_of(model, here) == start_of(model, next)) continue;
+            if (model.end_of(here) == model.start_of(next)) continue;
             found.push_back(warning("the loop is not closed after edge #" +
                                         std::to_string(model[here.edge].source),
-                                    loop.source, model[end_of(model, here)].point));
+                                    loop.source, model[model.end_of(here)].point));
         }
     }
     std::vector<int> excess(model.edges.size(), 0);

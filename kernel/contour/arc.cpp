@@ -77,22 +77,26 @@ Point2 point_at(const Point2& start, const Segment& segment, double fraction) {
     return start + scale * rotated(chord, -half * (1 - fraction));
 }
 
+double offset_mm(const Point2& start, const Segment& segment, const Point2& point) {
+    // With curvature k, q from the start and q.n along the right normal, the distance to the centre over the
+    // radius is sqrt(1 + 2 k q.n + k^2 q^2); rationalised, less one and over k, it is defined for k = 0 too.
+    const double half_chord = (segment.end - start).norm() / 2, s = segment.sagitta_mm;
+    const double curvature = 2 * s / (half_chord * half_chord + s * s);
+    const Vector2 offset = point - start;
+    const double right = cross(offset, start_tangent(start, segment));
+    const double square = curvature * offset.squaredNorm();
+    const double ratio2 = 1 + curvature * (2 * right + square);
+    return (2 * right + square) / (1 + std::sqrt(std::max(0.0, ratio2)));
+}
+
 double distance_mm(const Point2& start, const Segment& segment, const Point2& point) {
-    const double to_ends =
-        std::min((point - start).norm(), (point - segment.end).norm());
-    const auto circle = circle_of(start, segment);
-    if (!circle) {
-        const Vector2 chord = segment.end - start;
-        const double along = (point - start).dot(chord), length2 = chord.squaredNorm();
-        if (along <= 0 || along >= length2) return to_ends;
-        return std::abs(cross(chord, point - start)) / std::sqrt(length2);
-    }
-    const double turn = segment.sagitta_mm > 0 ? 1 : -1;
-    const Vector2 from_centre = point - circle->centre, to_start = start - circle->centre;
-    double angle = turn * std::atan2(cross(to_start, from_centre), to_start.dot(from_centre));
-    if (angle < 0) angle += 2 * std::numbers::pi;
-    if (angle > std::abs(sweep_rad(start, segment))) return to_ends;
-    return std::abs(from_centre.norm() - circle->radius_mm);
+    const bool before = (point - start).dot(start_tangent(start, segment)) < 0;
+    const bool after = (point - segment.end).dot(end_tangent(start, segment)) > 0;
+    // Beside the chord of more than a semicircle, a point is beside the arc unless it is past both ends.
+    const bool wide = std::abs(sweep_rad(start, segment)) > std::numbers::pi;
+    const bool beside = wide ? !(before && after) : !(before || after);
+    if (beside) return std::abs(offset_mm(start, segment, point));
+    return std::min((point - start).norm(), (point - segment.end).norm());
 }
 
 Segment arc_with_sweep(const Point2& start, const Point2& end, double sweep) {

@@ -43,6 +43,9 @@ Vector2 end_tangent(const Point2& start, const Segment& segment);
 // The point at a fraction (0..1) of the segment's length.
 Point2 point_at(const Point2& start, const Segment& segment, double fraction);
 
+// The signed distance of a point to the segment's whole line or circle: positive to the right of it.
+double offset_mm(const Point2& start, const Segment& segment, const Point2& point);
+
 // The distance of a point to the segment.
 double distance_mm(const Point2& start, const Segment& segment, const Point2& point);
 

@@ -150,7 +150,10 @@ std::optional<Contour> simplified(Path path, double allowed_mm) {
     }
     Path result{joined.front().start, {}};
     for (const Run& run : joined) result.segments.push_back(run.segment);
-    if (result.segments.size() == 1) return std::nullopt;
+    // One line there and back again encloses nothing.
+    const bool encloses = result.segments.size() > 2 ||
+                          (result.segments.size() == 2 && (joined[0].circle || joined[1].circle));
+    if (!encloses) return std::nullopt;
     return result;
 }
 

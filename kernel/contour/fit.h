@@ -3,10 +3,8 @@
 // Contract
 //  1. The arcs start at `start` and end at `end`, exactly. Where they meet inside, they share the tangent; the
 //     first leaves and the last arrives along the curve's own tangent.
-//  2. No point of the curve is farther than `allowed_mm` from the arcs. The deviation of a biarc from a smooth
-//     curve vanishes at its ends with its slope and has one extremum in each arc unless the curvature turns
-//     there; it is taken at `fit_samples` points an arc and the bound is lowered by the largest error that
-//     a sampled extremum can hide (see fit.cpp).
+//  2. No point of the curve is farther than `allowed_mm` from the arcs; the deviation's extrema are interpolated
+//     between samples, not just sampled (see fit.cpp).
 //  3. Arcs are as long as the bound allows, found by bisection.
 //
 // Method: biarcs with equal tangent lengths (Bolton, "Biarc curves", CAD 7(2), 1975), greedily.

@@ -2,8 +2,10 @@
 
 #include "kernel/section/containment.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "kernel/contour/arc.h"
 
@@ -32,6 +34,25 @@ void append_outline(const Edge& edge, bool reversed, std::vector<Point3>& points
     for (int i = 0; i < steps; ++i) {
         points.push_back(evaluate(edge.curve, from + (to - from) * i / steps));
     }
+}
+
+// The face's coedges in order, without those that come in both directions.
+std::vector<Coedge> bounding_coedges(const Model& model, const Face& face) {
+    std::vector<Coedge> all;
+    std::vector<std::pair<EdgeId, bool>> keys;
+    for (std::uint32_t l = 0; l < face.loop_count; ++l) {
+        const Loop& loop = model.loops[face.first_loop + l];
+        for (std::uint32_t c = 0; c < loop.coedge_count; ++c) {
+            all.push_back(model.coedges[loop.first_coedge + c]);
+            keys.emplace_back(all.back().edge, all.back().reversed);
+        }
+    }
+    std::sort(keys.begin(), keys.end());
+    std::erase_if(all, [&](const Coedge& coedge) {
+        return std::binary_search(keys.begin(), keys.end(),
+                                  std::pair(coedge.edge, !coedge.reversed));
+    });
+    return all;
 }
 
 // The signed turn from one point of a loop to the next, in the surface's first parameter.
@@ -66,20 +87,23 @@ UvStep uv_step(const Surface& surface, const Point3& a, const Point3& b) {
 
 Containment::Containment(const Model& model, FaceId id, const std::vector<double>& vertex_level_mm)
     : surface_(model[id].surface), same_sense_(model[id].same_sense) {
-    const Face& face = model[id];
-    for (std::uint32_t l = 0; l < face.loop_count; ++l) {
-        const Loop& loop = model.loops[face.first_loop + l];
-        if (loop.coedge_count == 0) continue;
-        LoopOutline outline;
-        for (std::uint32_t c = 0; c < loop.coedge_count; ++c) {
-            const Coedge& coedge = model.coedges[loop.first_coedge + c];
-            append_outline(model[coedge.edge], coedge.reversed, outline.points);
+    std::vector<Coedge> rest = bounding_coedges(model, model[id]);
+    while (!rest.empty()) {
+        Outline outline;
+        outline.height_mm = vertex_level_mm[model.start_of(rest.front()).value];
+        const VertexId origin = model.start_of(rest.front());
+        for (auto next = rest.begin(); next != rest.end();) {
+            append_outline(model[next->edge], next->reversed, outline.points);
+            const VertexId at = model.end_of(*next);
+            rest.erase(next);
+            if (at == origin) break;
+            next = std::find_if(rest.begin(), rest.end(), [&](const Coedge& coedge) {
+                return model.start_of(coedge) == at;
+            });
         }
-        const Edge& any = model[model.coedges[loop.first_coedge].edge];
-        outline.height_mm = vertex_level_mm[any.start.value];
         std::visit([&](const auto& s) { outline.winding = winding_around(s.frame, outline.points); },
                    surface_);
-        loops_.push_back(std::move(outline));
+        outlines_.push_back(std::move(outline));
     }
 }
 
@@ -93,14 +117,14 @@ bool Containment::holds(const Point3& point, double z_mm) const {
 
 bool Containment::holds_apex() const {
     int winding = 0;
-    for (const LoopOutline& loop : loops_) winding += loop.winding;
+    for (const Outline& outline : outlines_) winding += outline.winding;
     return winding != 0;
 }
 
 bool Containment::on_cylinder(double z_mm) const {
     int below = 0;
-    for (const LoopOutline& loop : loops_) {
-        if (loop.height_mm <= z_mm) below += loop.winding;
+    for (const Outline& outline : outlines_) {
+        if (outline.height_mm <= z_mm) below += outline.winding;
     }
     return below != 0;
 }
@@ -108,8 +132,8 @@ bool Containment::on_cylinder(double z_mm) const {
 bool Containment::on_cone(const Cone& cone, double z_mm) const {
     const bool unbounded_above = cone.frame.z.z() > 0;
     int winding = 0;
-    for (const LoopOutline& loop : loops_) {
-        if ((loop.height_mm > z_mm) == unbounded_above) winding += loop.winding;
+    for (const Outline& outline : outlines_) {
+        if ((outline.height_mm > z_mm) == unbounded_above) winding += outline.winding;
     }
     return winding != 0;
 }
@@ -119,14 +143,14 @@ bool Containment::on_sphere(const Sphere& sphere, const Point3& point) const {
     const Vector3 pole = (point - centre).normalized();
     const Vector3 x = pole.unitOrthogonal(), y = pole.cross(x);
     const double sense = same_sense_ ? 1 : -1;
-    for (const LoopOutline& loop : loops_) {
+    for (const Outline& outline : outlines_) {
         const auto project = [&](const Point3& p) {
             const Vector3 ray = (p - centre).normalized();
             return Point2(Point2(x.dot(ray), y.dot(ray)) / (1 - pole.dot(ray)));
         };
         double doubled_area = 0;
-        Point2 before = project(loop.points.back());
-        for (const Point3& p : loop.points) {
+        Point2 before = project(outline.points.back());
+        for (const Point3& p : outline.points) {
             const Point2 here = project(p);
             doubled_area += cross(before, here);
             before = here;
@@ -145,10 +169,10 @@ bool Containment::on_torus(const Torus& torus, const Point3& point) const {
         const int along = 1 - fixed;
         double nearest = full_turn_rad;
         bool face_before = false, met = false;
-        for (const LoopOutline& loop : loops_) {
-            for (std::size_t i = 0; i < loop.points.size(); ++i) {
-                const UvStep step = uv_step(surface_, loop.points[i],
-                                            loop.points[(i + 1) % loop.points.size()]);
+        for (const Outline& outline : outlines_) {
+            for (std::size_t i = 0; i < outline.points.size(); ++i) {
+                const UvStep step = uv_step(surface_, outline.points[i],
+                                            outline.points[(i + 1) % outline.points.size()]);
                 const double start = std::remainder(step.from[fixed] - at[fixed], full_turn_rad);
                 const double end = start + step.by[fixed];
                 if ((start <= 0) == (end <= 0)) continue;
@@ -165,12 +189,12 @@ bool Containment::on_torus(const Torus& torus, const Point3& point) const {
         }
         if (met) return face_before;
     }
-    for (const LoopOutline& loop : loops_) {
+    for (const Outline& outline : outlines_) {
         double doubled_area = 0;
         Point2 from = Point2::Zero();
-        for (std::size_t i = 0; i < loop.points.size(); ++i) {
-            const Point2 to = from + uv_step(surface_, loop.points[i],
-                                             loop.points[(i + 1) % loop.points.size()]).by;
+        for (std::size_t i = 0; i < outline.points.size(); ++i) {
+            const Point2 to = from + uv_step(surface_, outline.points[i],
+                                             outline.points[(i + 1) % outline.points.size()]).by;
             doubled_area += cross(from, to);
             from = to;
         }

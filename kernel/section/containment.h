@@ -4,8 +4,9 @@
 //  1. The answer is topological: it does not change as long as the component crosses no edge.
 //  2. Loops may wind around the surface, hold poles or an apex, or be missing (a whole sphere, a whole torus).
 //
-// Method, after preparing each loop once as points on the surface (dense enough that no two neighbours are an
-// eighth of a turn apart):
+// Method, after preparing the boundary once as closed outlines on the surface (dense enough that no two neighbours
+// are an eighth of a turn apart; an edge that the face uses in both directions, a seam, bounds nothing and is left
+// out):
 //   cylinder, cone   the component is in the face if the loops on its unbounded side wind around the axis
 //   sphere           seen in stereographic projection from a point of the component, every loop of the face runs
 //                    clockwise: the point at infinity is on its left
@@ -20,7 +21,7 @@
 
 namespace lyr {
 
-struct LoopOutline {
+struct Outline {
     std::vector<Point3> points;  // closed: the first follows the last
     double height_mm = 0;        // of any vertex: its level
     int winding = 0;             // around the axis of a cylinder or cone
@@ -44,7 +45,7 @@ private:
 
     Surface surface_;
     bool same_sense_;
-    std::vector<LoopOutline> loops_;
+    std::vector<Outline> outlines_;
 };
 
 }  // namespace lyr

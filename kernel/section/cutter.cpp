@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <limits>
-#include <numbers>
+#include <tuple>
 #include <utility>
 
 #include "kernel/section/face_section.h"

@@ -166,6 +166,19 @@ PlaneCurve between(const SurfaceSection& section, int component, double from, do
     };
 }
 
+// In two arcs where one would have a chord too short to say which circle it is of.
+void trace_circle(const SurfaceSection& section, int component, double from, double to, int turn,
+                  const Point2& start, const Point2& end, std::vector<Segment>& out) {
+    const double sweep = turn * (to - from);
+    if (to - from <= 1.5 * std::numbers::pi) {
+        out.push_back(arc_with_sweep(start, end, sweep));
+        return;
+    }
+    const Point2 middle = at(section, {component, (from + to) / 2}).point;
+    out.push_back(arc_with_sweep(start, middle, sweep / 2));
+    out.push_back(arc_with_sweep(middle, end, sweep / 2));
+}
+
 }  // namespace
 
 LeaningBasis leaning_basis(const Vector3& axis) {
@@ -219,8 +232,8 @@ void trace(const SurfaceSection& section, int component, double from, double to,
            const Point2& start, const Point2& end, const Tolerance& tolerance,
            std::vector<Segment>& out) {
     if (const auto* circles = std::get_if<CircleSection>(&section)) {
-        const auto i = static_cast<std::size_t>(component);
-        out.push_back(arc_with_sweep(start, end, circles->counter_clockwise[i] ? to - from : from - to));
+        const bool left = circles->counter_clockwise[static_cast<std::size_t>(component)];
+        trace_circle(section, component, from, to, left ? 1 : -1, start, end, out);
         return;
     }
     if (const auto* cone = std::get_if<ConeSection>(&section)) {

@@ -60,7 +60,9 @@ void find_components(TorusSection& torus) {
 SurfaceSection level_circles(const Torus& torus, bool same_sense, double height_mm) {
     const Point2 centre = torus.frame.origin.head<2>();
     const double half2 = (torus.minor_mm - height_mm) * (torus.minor_mm + height_mm);
-    const double half = std::sqrt(std::max(0.0, half2));
+    // The two circles are one: the plane touches the tube's top or bottom.
+    if (half2 <= resolution_mm * resolution_mm) return TouchSection{};
+    const double half = std::sqrt(half2);
     return CircleSection{centre, 2, {torus.major_mm + half, std::abs(torus.major_mm - half)},
                          {same_sense, !same_sense}, torus.major_mm};
 }

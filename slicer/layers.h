@@ -1,0 +1,47 @@
+// Work that is the same for every plane, done on several threads and taken in order.
+
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <thread>
+#include <vector>
+
+#include "slicer/slicer.h"
+
+namespace lyr::slicer {
+
+// The middle heights of a part's layers over the bed.
+std::vector<double> layer_middles(double part_height_mm, double layer_height_mm);
+
+SectionFigures figures_of(const Section& section);
+
+unsigned thread_count(const Options& options);
+
+// Calls make(i) for i < count on `threads` threads and take(i, result) in order of i, on this thread.
+// Batches keep no more than a few results a thread waiting. take() may return false to stop.
+template <class Make, class Take>
+bool in_order(std::size_t count, unsigned threads, Make make, Take take) {
+    constexpr std::size_t batch_per_thread = 16;
+    using Item = decltype(make(std::size_t{}));
+    for (std::size_t first = 0; first < count;) {
+        const std::size_t size = std::min(count - first, batch_per_thread * threads);
+        std::vector<Item> items(size);
+        std::atomic<std::size_t> next{0};
+        const auto run = [&] {
+            for (std::size_t i; (i = next.fetch_add(1)) < size;) items[i] = make(first + i);
+        };
+        std::vector<std::jthread> helpers;
+        for (unsigned t = 1; t < threads; ++t) helpers.emplace_back(run);
+        run();
+        helpers.clear();
+        for (std::size_t i = 0; i < size; ++i) {
+            if (!take(first + i, std::move(items[i]))) return false;
+        }
+        first += size;
+    }
+    return true;
+}
+
+}  // namespace lyr::slicer

@@ -1,0 +1,230 @@
+// The print: the model is put on the bed, cut layer by layer and encoded; layers are made on several threads and
+// written in order.
+
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "base/replace_file.h"
+#include "format/writer.h"
+#include "kernel/brep/placement.h"
+#include "kernel/toolpath/hatch.h"
+#include "slicer/bounds.h"
+#include "slicer/layers.h"
+#include "slicer/slicer.h"
+
+namespace lyr::slicer {
+namespace {
+
+// The format asks for arcs of at most this; wider ones are written as two.
+constexpr double widest_arc_rad = 1.5 * std::numbers::pi;
+
+// Rounding moves a point of an arc by at most this many quanta (format/writer.h, contract 1).
+constexpr double quanta_off = 1.3;
+
+// The coarsest of 1, 2, 5, 10, ... nm up to 1 um whose rounding stays within its share of the tolerance.
+format::Quantum quantum_for(const Tolerance& tolerance) {
+    format::Quantum best{1};
+    for (const std::uint32_t nm : {1u, 2u, 5u, 10u, 20u, 50u, 100u, 200u, 500u, 1000u}) {
+        if (quanta_off * nm * 1e-6 <= tolerance.quantise_mm()) best.nm = nm;
+    }
+    return best;
+}
+
+void encode_path(const Path& path, format::LayerEncoder& layer) {
+    layer.travel_to(path.start.x(), path.start.y());
+    Point2 from = path.start;
+    const auto arc_to = [&](const Point2& to, double sagitta_mm) {
+        layer.arc_to(to.x(), to.y(), sagitta_mm);
+    };
+    for (const Segment& segment : path.segments) {
+        const double sweep = sweep_rad(from, segment);
+        if (segment.sagitta_mm == 0) {
+            layer.line_to(segment.end.x(), segment.end.y());
+        } else if (std::abs(sweep) <= widest_arc_rad) {
+            arc_to(segment.end, segment.sagitta_mm);
+        } else {
+            const Point2 middle = point_at(from, segment, 0.5);
+            arc_to(middle, arc_with_sweep(from, middle, sweep / 2).sagitta_mm);
+            arc_to(segment.end, arc_with_sweep(middle, segment.end, sweep / 2).sagitta_mm);
+        }
+        from = segment.end;
+    }
+}
+
+void encode_contour(const Contour& contour, format::LayerEncoder& layer) {
+    if (const auto* circle = std::get_if<FullCircle>(&contour)) {
+        layer.travel_to(circle->centre.x() + circle->radius_mm, circle->centre.y());
+        layer.circle(circle->centre.x(), circle->centre.y(), circle->counter_clockwise);
+    } else {
+        encode_path(std::get<Path>(contour), layer);
+    }
+}
+
+void encode_hatch(const Hatch& hatch, format::LayerEncoder& layer) {
+    if (hatch.spans.empty()) return;
+    std::vector<format::HatchRow> rows;
+    for (std::size_t row = 0; row < hatch.row_count(); ++row) {
+        rows.push_back({hatch.row_start[row + 1] - hatch.row_start[row], false});
+    }
+    std::vector<format::HatchInterval> intervals;
+    for (const HatchSpan& span : hatch.spans) intervals.push_back({span.start_mm, span.end_mm});
+    layer.hatch({.direction_x = hatch.direction.x(),
+                 .direction_y = hatch.direction.y(),
+                 .offset_mm = hatch.first_offset_mm,
+                 .pitch_mm = hatch.pitch_mm,
+                 .one_way = false,
+                 .rows = rows,
+                 .intervals = intervals});
+}
+
+Point2 start_of(const Contour& contour) {
+    if (const auto* circle = std::get_if<FullCircle>(&contour)) {
+        return circle->centre + Vector2(circle->radius_mm, 0);
+    }
+    return std::get<Path>(contour).start;
+}
+
+format::LayerState layer_state(std::size_t index, const Section& section, const Options& options) {
+    format::LayerState state;
+    state.z_mm = static_cast<double>(index + 1) * options.layer_height_mm;
+    state.height_mm = options.layer_height_mm;
+    if (!section.solids.empty()) {
+        const Point2 start = start_of(section.solids.front().contours.front());
+        state.start_x_mm = start.x();
+        state.start_y_mm = start.y();
+    }
+    state.travel_speed_mm_s = options.travel_speed_mm_s;
+    state.temperatures.push_back(
+        {{.kind = format::HeaterKind::bed, .tool = 0}, options.bed_temp_c});
+    state.temperatures.push_back(
+        {{.kind = format::HeaterKind::tool, .tool = 0}, options.nozzle_temp_c});
+    return state;
+}
+
+Result<format::EncodedLayer> encode(std::size_t index, const Section& section,
+                                    const Options& options, format::Quantum quantum) {
+    format::LayerEncoder layer(quantum, layer_state(index, section, options));
+    layer.begin_path({.role = format::Role::outer_wall,
+                      .width_mm = options.line_width_mm,
+                      .height_mm = options.layer_height_mm,
+                      .speed_mm_s = options.wall_speed_mm_s});
+    std::vector<Contour> region;
+    for (const SolidSection& solid : section.solids) {
+        for (const Contour& contour : solid.contours) {
+            encode_contour(contour, layer);
+            region.push_back(contour);
+        }
+    }
+    layer.begin_path({.role = format::Role::solid_infill,
+                      .width_mm = options.line_width_mm,
+                      .height_mm = options.layer_height_mm,
+                      .speed_mm_s = options.infill_speed_mm_s});
+    const double angle = (index % 2 == 0 ? 1 : 3) * std::numbers::pi / 4;
+    encode_hatch(hatch(region, angle, options.line_width_mm), layer);
+    return layer.finish();
+}
+
+// What one layer's work gives; `error` ends the print.
+struct MadeLayer {
+    SectionFigures figures;
+    Diagnostics diagnostics;
+    std::optional<format::EncodedLayer> encoded;
+    std::optional<Diagnostic> error;
+};
+
+MadeLayer make_layer(const Cutter& cutter, std::size_t index, double middle_mm,
+                     const Options& options, format::Quantum quantum) {
+    Section section = cutter.cut(middle_mm);
+    for (Diagnostic& found : section.diagnostics) found.where.layer = static_cast<int>(index + 1);
+    MadeLayer made{figures_of(section), section.diagnostics, {}, {}};
+    auto encoded = encode(index, section, options, quantum);
+    if (encoded) {
+        made.encoded = std::move(*encoded);
+    } else {
+        made.error = encoded.error();
+    }
+    return made;
+}
+
+void count(const SectionFigures& figures, Summary& summary) {
+    ++summary.layers;
+    summary.contours += figures.loops;
+    summary.circles += figures.circles;
+    summary.lines += figures.lines;
+    summary.arcs += figures.arcs;
+}
+
+Model on_bed(Model model, const Options& options, Eigen::AlignedBox3d& box) {
+    box = bounding_box(model, options.tolerance);
+    const Vector3 move(options.bed_position_mm.x() - box.min().x(),
+                       options.bed_position_mm.y() - box.min().y(), -box.min().z());
+    box.translate(move);
+    return transformed(std::move(model), Eigen::Affine3d(Eigen::Translation3d(move)));
+}
+
+format::Metadata metadata(const std::string& source_name, const Options& options) {
+    format::Metadata data;
+    data.generator = "stepc " LYR_VERSION;
+    data.source_name = source_name;
+    data.tolerance_mm = options.tolerance.total_mm;
+    return data;
+}
+
+}  // namespace
+
+Result<Summary> print(Model model, const std::string& source_name, const std::string& lyr_path,
+                      const std::string& report_path, const Options& options,
+                      const Progress& progress, Diagnostics& diagnostics) {
+    Summary summary{.solids = model.solids.size(), .faces = model.faces.size()};
+    const Model placed = on_bed(std::move(model), options, summary.box);
+    const auto middles = layer_middles(summary.box.sizes().z(), options.layer_height_mm);
+    if (middles.empty()) {
+        return Diagnostic{Severity::error, ExitStatus::geometry,
+                          "the part is lower than half a layer: nothing to print", {}};
+    }
+    const format::Quantum quantum = quantum_for(options.tolerance);
+    auto writer = format::Writer::create(lyr_path, quantum, metadata(source_name, options));
+    if (!writer) return writer.error();
+    std::optional<ReplaceFile> report;
+    if (!report_path.empty()) {
+        auto opened = ReplaceFile::open(report_path);
+        if (!opened) return opened.error();
+        report.emplace(std::move(*opened));
+    }
+
+    const Cutter cutter(placed, options.tolerance);
+    std::optional<Diagnostic> failed;
+    in_order(
+        middles.size(), thread_count(options),
+        [&](std::size_t i) { return make_layer(cutter, i, middles[i], options, quantum); },
+        [&](std::size_t i, MadeLayer made) {
+            diagnostics.insert(diagnostics.end(), made.diagnostics.begin(), made.diagnostics.end());
+            if (made.figures.open > 0 && !options.allow_open) {
+                failed = Diagnostic{Severity::error,
+                                    ExitStatus::geometry,
+                                    std::to_string(made.figures.open) +
+                                        " contour ends do not close; --allow-open leaves them out",
+                                    {.layer = static_cast<int>(i + 1), .z_mm = middles[i]}};
+            } else if (made.error) {
+                failed = made.error;
+            } else if (Status appended = writer->append(*made.encoded); !appended) {
+                failed = appended.error();
+            }
+            if (failed) return false;
+            count(made.figures, summary);
+            if (report) report->write(to_json(made.figures));
+            progress("layers", i + 1, middles.size());
+            return true;
+        });
+    if (failed) return *failed;
+    if (report) {
+        if (Status written = report->commit(); !written) return written.error();
+    }
+    auto totals = writer->finish();
+    if (!totals) return totals.error();
+    summary.bytes = totals->bytes;
+    return summary;
+}
+
+}  // namespace lyr::slicer

@@ -1,0 +1,77 @@
+// From a STEP file to a print: what stepc does, as functions.
+//
+//   load()        file -> model, turned so that the build direction is +z
+//   section_at()  sections at given heights, in the model's own coordinates
+//   print()       the model on the bed -> layers -> .lyr
+//
+// Contract
+//  1. No output appears unless all of it is right: an error leaves the target as it was.
+//  2. The output depends on the input and the options, not on the number of threads.
+//  3. Layers are layer_height thick; layer i is the section at its middle, (i + 1/2) layer_height over the bed, as
+//     long as that is below the part's top. So a part of a whole number of layers has just as many, and a rest of
+//     less than half a layer is left off, of more than half counts as a layer.
+//  4. On the bed means: lowest point at z = 0, the bounding box's lower left corner at `bed_position_mm`.
+//  5. A contour that does not close is an error, unless `allow_open`; then it is left out and reported.
+
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/diagnostic.h"
+#include "kernel/brep/model.h"
+#include "kernel/geometry/tolerance.h"
+#include "kernel/section/cutter.h"
+
+namespace lyr::slicer {
+
+struct Options {
+    Tolerance tolerance;
+    Vector3 up = Vector3::UnitZ();
+    double layer_height_mm = 0.2;
+    double line_width_mm = 0.4;
+    Point2 bed_position_mm = Point2::Zero();
+    double wall_speed_mm_s = 50;
+    double infill_speed_mm_s = 100;
+    double travel_speed_mm_s = 150;
+    double nozzle_temp_c = 210;
+    double bed_temp_c = 60;
+    bool allow_open = false;
+    unsigned threads = 0;  // 0: as many as there are processors
+};
+
+// Called from the calling thread only, with what is done of how much.
+using Progress = std::function<void(const char* stage, std::size_t done, std::size_t total)>;
+
+struct Summary {
+    std::size_t solids = 0, faces = 0, layers = 0, contours = 0, circles = 0, lines = 0, arcs = 0;
+    std::uint64_t bytes = 0;
+    Eigen::AlignedBox3d box;  // of the model, as it is printed
+};
+
+struct SectionFigures {
+    double z_mm = 0, area_mm2 = 0, length_mm = 0;
+    std::size_t loops = 0, circles = 0, lines = 0, arcs = 0;
+    std::uint32_t open = 0;
+};
+
+Result<Model> load(const std::string& step_path, const Options& options, Diagnostics& diagnostics);
+
+// One line a section: {"z":...,"area_mm2":...,"length_mm":...,"loops":...,"lines":...,"arcs":...,"open":0}
+std::string to_json(const SectionFigures& figures);
+
+// Heights from a text file, one a line; empty lines and lines that start with # are passed over.
+// Errors: not readable, not a number (with its line).
+Result<std::vector<double>> read_heights(const std::string& path);
+
+Result<Summary> section_at(const Model& model, const std::vector<double>& heights_mm,
+                           const std::string& report_path, const Options& options,
+                           const Progress& progress, Diagnostics& diagnostics);
+
+// Writes the .lyr to `lyr_path` and, if `report_path` is not empty, the layers' figures there.
+Result<Summary> print(Model model, const std::string& source_name, const std::string& lyr_path,
+                      const std::string& report_path, const Options& options,
+                      const Progress& progress, Diagnostics& diagnostics);
+
+}  // namespace lyr::slicer

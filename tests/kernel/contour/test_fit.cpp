@@ -1,0 +1,102 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "kernel/contour/fit.h"
+
+using namespace lyr;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+PlaneCurve ellipse(double a, double b) {
+    return [=](double t) {
+        return CurvePoint{{a * std::cos(t), b * std::sin(t)},
+                          Vector2(-a * std::sin(t), b * std::cos(t)).normalized()};
+    };
+}
+
+PlaneCurve hyperbola(double a, double b) {
+    return [=](double t) {
+        return CurvePoint{{a * std::cosh(t), b * std::sinh(t)},
+                          Vector2(a * std::sinh(t), b * std::cosh(t)).normalized()};
+    };
+}
+
+// An inflection in the middle.
+PlaneCurve sine() {
+    return [](double t) { return CurvePoint{{t, std::sin(t)}, Vector2(1, std::cos(t)).normalized()}; };
+}
+
+struct Fitted {
+    std::vector<Segment> arcs;
+    double worst_mm = 0, worst_turn = 0;
+};
+
+Fitted fit(const PlaneCurve& curve, double from, double to, double allowed_mm) {
+    Fitted result;
+    const Point2 start = curve(from).point, end = curve(to).point;
+    fit_arcs(curve, from, to, start, end, allowed_mm, result.arcs);
+    constexpr int samples = 20000;
+    for (int i = 0; i <= samples; ++i) {
+        const Point2 point = curve(from + (to - from) * i / samples).point;
+        Point2 at = start;
+        double off = 1e9;
+        for (const Segment& arc : result.arcs) {
+            off = std::min(off, distance_mm(at, arc, point));
+            at = arc.end;
+        }
+        result.worst_mm = std::max(result.worst_mm, off);
+    }
+    CHECK((result.arcs.back().end - end).norm() == 0);
+    Point2 at = start;
+    Vector2 tangent = curve(from).tangent;
+    for (const Segment& arc : result.arcs) {
+        const Vector2 leaving = start_tangent(at, arc);
+        result.worst_turn = std::max(result.worst_turn, (leaving - tangent).norm());
+        tangent = end_tangent(at, arc);
+        at = arc.end;
+    }
+    result.worst_turn = std::max(result.worst_turn, (tangent - curve(to).tangent).norm());
+    return result;
+}
+
+}  // namespace
+
+TEST_CASE("fit 1, 2: arcs share tangents and stay within the bound everywhere") {
+    for (const double allowed_mm : {0.05, 0.0025, 0.0001}) {
+        for (const auto& [curve, from, to] :
+             {std::tuple{ellipse(5, 4), 0.3, 4.5}, {ellipse(50, 1), 0.0, 2 * pi},
+              {ellipse(1, 1000), -1.0, 3.0}, {hyperbola(2, 1), -3.0, 3.0},
+              {hyperbola(0.001, 1), -4.0, 4.0}, {sine(), 0.0, 9.0}}) {
+            const Fitted fitted = fit(curve, from, to, allowed_mm);
+            CHECK(fitted.worst_mm <= allowed_mm);
+            CHECK(fitted.worst_turn < 1e-6);
+        }
+    }
+}
+
+TEST_CASE("fit 3: a circle takes few arcs and a curve's arcs grow with the cube root of the bound") {
+    CHECK(fit(ellipse(3, 3), 0, 2 * pi, 0.001).arcs.size() <= 12);
+    const auto coarse = fit(ellipse(50, 20), 0, 2 * pi, 0.008).arcs.size();
+    const auto fine = fit(ellipse(50, 20), 0, 2 * pi, 0.001).arcs.size();
+    CHECK(fine <= 2 * coarse + 4);
+}
+
+TEST_CASE("fit: a corner that no arc can follow is passed, not looped on") {
+    const PlaneCurve corner = [](double t) {
+        return t < 0 ? CurvePoint{{t, 0}, {1, 0}} : CurvePoint{{0, t}, {0, 1}};
+    };
+    std::vector<Segment> arcs;
+    fit_arcs(corner, -1, 1, {-1, 0}, {0, 1}, 0.001, arcs);
+    CHECK(arcs.size() < 200);
+    Point2 at(-1, 0);
+    double off = 1e9;
+    for (const Segment& arc : arcs) {
+        off = std::min(off, distance_mm(at, arc, {0, 0}));
+        at = arc.end;
+    }
+    CHECK(off <= 0.001);
+}
