@@ -1,0 +1,48 @@
+# make            builds stepc, lyrrun and lyrview into build/ (installs missing Debian packages first)
+# make demo       slices the gearbox base, simulates the print, draws a layer: all into demo/
+# make test       builds and runs every test
+# make sanitize   the same tests under the address and undefined-behaviour sanitizers, into build-sanitize/
+# make board      only what a printer's board needs (lyrrun, lyrview), into build-board/
+# make install    into PREFIX (default /usr/local)
+# make clean      removes what the others made
+
+BUILD  ?= build
+PREFIX ?= /usr/local
+JOBS   ?= $(shell nproc)
+CTEST   = ctest --output-on-failure -j $(JOBS)
+
+.PHONY: all setup demo test sanitize board install clean
+
+all: setup
+	cmake -S . -B $(BUILD) -DCMAKE_BUILD_TYPE=Release
+	cmake --build $(BUILD) -j $(JOBS)
+
+setup:
+	@tools/setup
+
+demo: all
+	@mkdir -p demo
+	$(BUILD)/stepc fixtures/parts/gearbox_base.step -o demo/gearbox_base.lyr
+	$(BUILD)/lyrrun demo/gearbox_base.lyr --simulate
+	$(BUILD)/lyrview demo/gearbox_base.lyr --layer 36 -o demo/layer-36.svg
+	@echo "The picture: demo/layer-36.svg"
+
+test: all board
+	cd $(BUILD) && $(CTEST)
+
+sanitize: setup
+	cmake -S . -B build-sanitize -DCMAKE_BUILD_TYPE=RelWithDebInfo -DLYR_SANITIZE=ON
+	cmake --build build-sanitize -j $(JOBS)
+	cd build-sanitize && $(CTEST)
+
+# The link graph's proof: without the kernel there is neither Eigen nor a model.
+board: setup
+	cmake -S . -B build-board -DCMAKE_BUILD_TYPE=Release -DLYR_KERNEL=OFF -DLYR_TESTS=OFF \
+	  -DCMAKE_DISABLE_FIND_PACKAGE_Eigen3=ON
+	cmake --build build-board -j $(JOBS)
+
+install: all
+	cmake --install $(BUILD) --prefix $(PREFIX)
+
+clean:
+	rm -rf build build-sanitize build-board demo
