@@ -104,6 +104,8 @@ Diagnostic cannot_open(const LineRequest& request, int error) {
 // The bank of the request's kernel chip, opened if it is the first line there. Two ways to write
 // the same chip ("0", "gpiochip0") are the same bank.
 Result<std::size_t> bank_for(std::vector<Bank>& banks, const LineRequest& request) {
+    // The library would take an empty name for chip number 0.
+    if (request.chip.empty()) return cannot_open(request, ENODEV);
     errno = 0;
     std::unique_ptr<gpiod_chip, CloseChip> chip(::gpiod_chip_open_lookup(request.chip.c_str()));
     if (!chip) return cannot_open(request, errno ? errno : ENODEV);
