@@ -1,0 +1,42 @@
+// One item of a representation (a solid, or a surface model) as a model of its own, in its own coordinates.
+//
+// Contract
+//  1. Vertices, edges and faces are shared as the file shares them; each solid has its own.
+//  2. Void shells come after the outer one and look away from the material, into the void.
+//  3. Surface models give one solid for each closed shell; what bounds no exact volume (a shell that does not
+//     close, triangles) is listed in `open`, as errors, and its geometry is not read.
+
+#pragma once
+
+#include <unordered_set>
+
+#include "kernel/brep/model.h"
+#include "parser/import/entity.h"
+#include "parser/import/units.h"
+
+namespace lyr::importer {
+
+struct Part {
+    Model model;
+    Diagnostics open;
+};
+
+// What an item of a representation is to this program.
+enum class ItemKind {
+    other,          // bounds no volume: curves, points, placements, surfaces
+    solid,          // MANIFOLD_SOLID_BREP, BREP_WITH_VOIDS
+    surface_model,  // SHELL_BASED_SURFACE_MODEL, FACE_BASED_SURFACE_MODEL
+    tessellated,  // TESSELLATED_SOLID, TESSELLATED_SHELL: often beside the exact solid that they approximate
+    mapped,       // MAPPED_ITEM
+    unsupported,  // a solid of another kind
+};
+ItemKind kind_of(const File& file, InstanceIndex item);
+
+// Closed shells that solids are made of, so that a surface model on the same shell is not taken for another solid.
+using ShellSet = std::unordered_set<std::uint32_t>;
+ShellSet shells_of_solids(const File& file);
+
+Result<Part> read_item(const File& file, InstanceIndex item, const Units& units,
+                       const ShellSet& taken, part21::Trail& trail, Diagnostics& diagnostics);
+
+}  // namespace lyr::importer

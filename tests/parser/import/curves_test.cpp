@@ -1,0 +1,187 @@
+// Curves in all forms that files state them in, by the numbers of the contract in parser/import/curves.h.
+
+#include <doctest/doctest.h>
+
+#include <functional>
+
+#include "checks.h"
+
+using namespace lyr;
+using namespace lyr::test;
+
+namespace {
+
+// A disc on z = 0 whose rim is the curve that `curve` writes, from `start` to `end` and straight back.
+Edge edge_on(const std::function<int(StepText&)>& curve, const Point3& start, const Point3& end,
+             bool same_sense, Diagnostics* diagnostics = nullptr) {
+    StepText step;
+    const int a = step.vertex(start), b = step.vertex(end);
+    const int edge = step.edge(a, b, curve(step), same_sense);
+    const int back = step.edge(b, a, step.line(end, start));
+    const int at = step.placement({0, 0, 0}, Vector3::UnitZ(), Vector3::UnitX());
+    const int plane = step.add("PLANE(''," + StepText::ref(at) + ")");
+    const int up = step.face(
+        {step.bound(step.loop({step.oriented(edge, true), step.oriented(back, true)}))}, plane);
+    const int down =
+        step.face({step.bound(step.loop({step.oriented(back, false), step.oriented(edge, false)}))},
+                  plane, false);
+    const int shell = step.add("CLOSED_SHELL(''," + StepText::refs({up, down}) + ")");
+    step.representation({step.add("MANIFOLD_SOLID_BREP(''," + StepText::ref(shell) + ")")},
+                        step.millimetres());
+    const Imported result = imported(step);
+    if (diagnostics) *diagnostics = result.diagnostics;
+    const Edge found = result.model.edges.at(0);
+    CHECK(near(evaluate(found.curve, found.t_start), start));
+    CHECK(near(evaluate(found.curve, found.t_end), end));
+    return found;
+}
+
+Point3 middle(const Edge& edge) {
+    return evaluate(edge.curve, 0.5 * (edge.t_start + edge.t_end));
+}
+
+std::string points(StepText& step, const std::vector<Point3>& list) {
+    std::vector<int> ids;
+    for (const Point3& p : list) ids.push_back(step.point(p));
+    return StepText::refs(ids);
+}
+
+const std::vector<Point3> arch{{0, 0, 0}, {0, 2, 0}, {2, 2, 0}, {2, 0, 0}};
+
+int circle(StepText& step) {
+    const int at = step.placement({0, 0, 0}, Vector3::UnitZ(), Vector3::UnitX());
+    return step.add("CIRCLE(''," + StepText::ref(at) + ",2.)");
+}
+
+}  // namespace
+
+TEST_CASE("1, 2: a circle's sense says which of two arcs is meant") {
+    const double r = std::sqrt(2.0);
+    CHECK(near(middle(edge_on(circle, {2, 0, 0}, {0, 2, 0}, true)), {r, r, 0}));
+    CHECK(near(middle(edge_on(circle, {2, 0, 0}, {0, 2, 0}, false)), {-r, -r, 0}));
+    const auto trimmed = [](bool agrees) {
+        return [agrees](StepText& step) {
+            const int basis = circle(step);
+            return step.add("TRIMMED_CURVE(''," + StepText::ref(basis) +
+                            ",(PARAMETER_VALUE(0.)),(PARAMETER_VALUE(" + "1.5707963))," +
+                            StepText::flag(agrees) + ",.PARAMETER.)");
+        };
+    };
+    CHECK(near(middle(edge_on(trimmed(true), {2, 0, 0}, {0, 2, 0}, true)), {r, r, 0}));
+    CHECK(near(middle(edge_on(trimmed(false), {2, 0, 0}, {0, 2, 0}, true)), {-r, -r, 0}));
+    CHECK(near(middle(edge_on(trimmed(false), {2, 0, 0}, {0, 2, 0}, false)), {r, r, 0}));
+}
+
+TEST_CASE("1: curves on surfaces count by their curve in space") {
+    for (const std::string type : {"SURFACE_CURVE", "SEAM_CURVE", "INTERSECTION_CURVE"}) {
+        const auto on_surface = [&](StepText& step) {
+            const int in_space = circle(step);
+            return step.add(type + "(''," + StepText::ref(in_space) + ",(),.CURVE_3D.)");
+        };
+        const Edge edge = edge_on(on_surface, {2, 0, 0}, {0, 2, 0}, true);
+        CHECK(std::holds_alternative<Circle>(edge.curve));
+    }
+}
+
+TEST_CASE("1: conics") {
+    const auto conic = [](const std::string& type, const std::string& sizes) {
+        return [=](StepText& step) {
+            const int at = step.placement({0, 0, 0}, Vector3::UnitZ(), Vector3::UnitX());
+            return step.add(type + "(''," + StepText::ref(at) + "," + sizes + ")");
+        };
+    };
+    CHECK(near(middle(edge_on(conic("ELLIPSE", "3.,1."), {3, 0, 0}, {-3, 0, 0}, true)), {0, 1, 0}));
+    CHECK(near(middle(edge_on(conic("PARABOLA", "0.5"), {2, -2, 0}, {2, 2, 0}, true)), {0, 0, 0}));
+    const double c = std::cosh(1.0), s = std::sinh(1.0);
+    CHECK(near(
+        middle(edge_on(conic("HYPERBOLA", "2.,3."), {2 * c, -3 * s, 0}, {2 * c, 3 * s, 0}, true)),
+        {2, 0, 0}));
+}
+
+TEST_CASE("1, 3: B-splines in every form") {
+    const std::string tail = ",.UNSPECIFIED.,.F.,.U.";
+    const auto simple = [&](const std::string& type, const std::string& knots) {
+        return edge_on(
+            [&](StepText& step) {
+                return step.add(type + "('',3," + points(step, arch) + tail + knots + ")");
+            },
+            arch.front(), arch.back(), true);
+    };
+    CHECK(near(middle(simple("B_SPLINE_CURVE_WITH_KNOTS", ",(4,4),(0.,5.),.UNSPECIFIED.")),
+               {1, 1.5, 0}));
+    CHECK(near(middle(simple("BEZIER_CURVE", "")), {1, 1.5, 0}));
+    CHECK(near(middle(simple("QUASI_UNIFORM_CURVE", "")), {1, 1.5, 0}));
+    // Weights 1, 3, 3, 1 pull the arch up: (0 + 9*2 + 9*2 + 0) / (1 + 9 + 9 + 1).
+    const std::string forms[] = {"B_SPLINE_CURVE_WITH_KNOTS((4,4),(0.,1.),.UNSPECIFIED.)",
+                                 "BEZIER_CURVE()", "QUASI_UNIFORM_CURVE()"};
+    for (const std::string& form : forms) {
+        const Edge edge = edge_on(
+            [&](StepText& step) {
+                return step.add(
+                    "(BOUNDED_CURVE()B_SPLINE_CURVE(3," + points(step, arch) + tail + ")" + form +
+                    "CURVE()GEOMETRIC_REPRESENTATION_ITEM()RATIONAL_B_SPLINE_CURVE((1.,3.,3.,1.))" +
+                    "REPRESENTATION_ITEM(''))");
+            },
+            arch.front(), arch.back(), true);
+        CHECK(near(middle(edge), {1, 1.8, 0}));
+    }
+    // A uniform cubic starts inside its control polygon: at (1, 4, 1) / 6.
+    const Point3 start = (arch[0] + 4 * arch[1] + arch[2]) / 6,
+                 end = (arch[1] + 4 * arch[2] + arch[3]) / 6;
+    const Edge uniform = edge_on(
+        [&](StepText& step) {
+            return step.add("UNIFORM_CURVE('',3," + points(step, arch) + tail + ")");
+        },
+        start, end, true);
+    CHECK(middle(uniform).x() == doctest::Approx(1));
+    const Edge polyline =
+        edge_on([&](StepText& step) { return step.add("POLYLINE(''," + points(step, arch) + ")"); },
+                arch.front(), arch.back(), true);
+    CHECK(near(middle(polyline), {1, 2, 0}));
+}
+
+TEST_CASE("3: a closed spline is one by its ends, not by its flag") {
+    const std::vector<Point3> ring{{1, 0, 0}, {2, 2, 0}, {-2, 2, 0}, {-1, -3, 0}, {1, 0, 0}};
+    StepText step;
+    const int curve = step.add("B_SPLINE_CURVE_WITH_KNOTS('',4," + points(step, ring) +
+                               ",.UNSPECIFIED.,.F.,.U.,(5,5),(0.,1.),.UNSPECIFIED.)");
+    const int v = step.vertex(ring.front());
+    const int rim = step.edge(v, v, curve);
+    const int at = step.placement({0, 0, 0}, Vector3::UnitZ(), Vector3::UnitX());
+    const int plane = step.add("PLANE(''," + StepText::ref(at) + ")");
+    const int up = step.face({step.bound(step.loop({step.oriented(rim, true)}))}, plane);
+    const int down = step.face({step.bound(step.loop({step.oriented(rim, false)}))}, plane, false);
+    const int shell = step.add("CLOSED_SHELL(''," + StepText::refs({up, down}) + ")");
+    step.representation({step.add("MANIFOLD_SOLID_BREP(''," + StepText::ref(shell) + ")")},
+                        step.millimetres());
+    const Edge edge = imported(step).model.edges.at(0);
+    CHECK(std::get<BSplineCurve>(edge.curve).closed);
+    CHECK(edge.t_end - edge.t_start == 1);
+}
+
+TEST_CASE("3: B-splines whose numbers disagree are errors that say how") {
+    const auto error_of = [](const std::string& degree, const std::string& knots) {
+        StepText step;
+        const int curve =
+            step.add("B_SPLINE_CURVE_WITH_KNOTS(''," + degree + "," + points(step, arch) +
+                     ",.UNSPECIFIED.,.F.,.U.," + knots + ",.UNSPECIFIED.)");
+        const int a = step.vertex(arch.front()), b = step.vertex(arch.back());
+        const int edge = step.edge(a, b, curve);
+        const int at = step.placement({0, 0, 0}, Vector3::UnitZ(), Vector3::UnitX());
+        const int plane = step.add("PLANE(''," + StepText::ref(at) + ")");
+        const int face = step.face({step.bound(step.loop({step.oriented(edge, true)}))}, plane);
+        const int shell = step.add("CLOSED_SHELL(''," + StepText::refs({face}) + ")");
+        step.representation({step.add("MANIFOLD_SOLID_BREP(''," + StepText::ref(shell) + ")")},
+                            step.millimetres());
+        return refused(step);
+    };
+    CHECK(mentions(error_of("4", "(5,5),(0.,1.)"), "degree"));
+    CHECK(mentions(error_of("0", "(5,5),(0.,1.)"), "degree"));
+    CHECK(mentions(error_of("-9223372036854775808", "(5,5),(0.,1.)"), "degree"));
+    CHECK(mentions(error_of("3", "(4,3),(0.,1.)"), "add up to"));
+    CHECK(mentions(error_of("3", "(4,4),(0.,1.,2.)"), "as many multiplicities"));
+    CHECK(mentions(error_of("3", "(4,4),(1.,0.)"), "ascending"));
+    CHECK(mentions(error_of("3", "(4,4),(0.,0.)"), "no domain"));
+    CHECK(mentions(error_of("3", "(-4,12),(0.,1.)"), "multiplicities"));
+    CHECK(mentions(error_of("3", "(4,1000000000000),(0.,1.)"), "multiplicities"));
+}

@@ -1,0 +1,199 @@
+// The numbers are those of the contract in parser/import/import.h.
+
+#include <doctest/doctest.h>
+
+#include <numbers>
+
+#include "checks.h"
+
+using namespace lyr;
+using namespace lyr::test;
+
+namespace {
+
+void check_box(const Model& model, const Point3& low, const Point3& high) {
+    check_model(model);
+    CHECK(model.vertices.size() == 8);
+    CHECK(model.edges.size() == 12);
+    CHECK(model.faces.size() == 6);
+    CHECK(near(box_of(model).min(), low));
+    CHECK(near(box_of(model).max(), high));
+    CHECK(plane_volume(model) == doctest::Approx((high - low).prod()));
+}
+
+}  // namespace
+
+TEST_CASE("1, 3: a box, whatever way the flags state it") {
+    for (int bits = 0; bits < 16; ++bits) {
+        CAPTURE(bits);
+        StepText step;
+        const ShapeFlags flags{(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, (bits & 8) != 0};
+        step.representation({step.box({1, 2, 3}, {4, 6, 8}, flags)}, step.millimetres());
+        const Imported result = imported(step);
+        CHECK(result.diagnostics.empty());
+        check_box(result.model, {1, 2, 3}, {4, 6, 8});
+        CHECK(result.model.solids.at(0).name == "box");
+    }
+}
+
+TEST_CASE("1, 3: a cylinder with a seam") {
+    StepText step;
+    step.representation({step.cylinder(5, 12)}, step.millimetres());
+    const Imported result = imported(step);
+    const Model& model = result.model;
+    CHECK(result.diagnostics.empty());
+    check_model(model);
+    CHECK(model.vertices.size() == 2);
+    CHECK(model.edges.size() == 3);
+    CHECK(model.faces.size() == 3);
+    for (const Edge& edge : model.edges) {
+        if (std::holds_alternative<Circle>(edge.curve)) {
+            CHECK(std::abs(edge.t_end - edge.t_start) == doctest::Approx(2 * std::numbers::pi));
+        }
+    }
+    for (const Face& face : model.faces) {
+        if (std::holds_alternative<Plane>(face.surface)) {
+            // 64 chords of a full circle of radius 5.
+            const double polygon = 32 * 25 * std::sin(2 * std::numbers::pi / 64);
+            CHECK(twice_area(model, face) / 2 == doctest::Approx(polygon));
+        }
+    }
+}
+
+TEST_CASE("1: voids look into the void, however their shell is stated") {
+    for (const bool inside_out : {false, true}) {
+        StepText step;
+        const int outer = step.box_shell({0, 0, 0}, {10, 10, 10});
+        int inner;
+        if (inside_out) {
+            // The shell already looks into the void, and is taken as it is.
+            std::vector<int> faces;
+            for (const int face : step.box_faces({2, 2, 2}, {5, 6, 7})) {
+                faces.push_back(step.add("ORIENTED_FACE('',*," + StepText::ref(face) + ",.F.)"));
+            }
+            inner = step.add("CLOSED_SHELL(''," + StepText::refs(faces) + ")");
+        } else {
+            inner = step.box_shell({2, 2, 2}, {5, 6, 7});
+        }
+        const int oriented = step.add("ORIENTED_CLOSED_SHELL('',*," + StepText::ref(inner) + "," +
+                                      StepText::flag(inside_out) + ")");
+        const int solid = step.add("BREP_WITH_VOIDS('hollow'," + StepText::ref(outer) + ",(" +
+                                   StepText::ref(oriented) + "))");
+        step.representation({solid}, step.millimetres());
+        const Imported result = imported(step);
+        check_model(result.model);
+        REQUIRE(result.model.solids.size() == 1);
+        CHECK(result.model.solids[0].shell_count == 2);
+        CHECK(plane_volume(result.model) == doctest::Approx(1000 - 3 * 4 * 5));
+    }
+}
+
+TEST_CASE("3, 5: surface models: closed shells are solids, open ones are not") {
+    StepText closed;
+    const int shell =
+        closed.add("OPEN_SHELL(''," + StepText::refs(closed.box_faces({0, 0, 0}, {1, 2, 3})) + ")");
+    const int other = closed.box_shell({5, 5, 5}, {6, 6, 6});
+    const int model =
+        closed.add("SHELL_BASED_SURFACE_MODEL('skin'," + StepText::refs({shell, other}) + ")");
+    closed.representation({model}, closed.millimetres(), "MANIFOLD_SURFACE_SHAPE_REPRESENTATION");
+    const Imported result = imported(closed);
+    check_model(result.model);
+    CHECK(result.model.solids.size() == 2);
+    CHECK(plane_volume(result.model) == doctest::Approx(6 + 1));
+
+    const auto with_open = [](bool beside_solid) {
+        StepText step;
+        std::vector<int> faces = step.box_faces({0, 0, 0}, {1, 2, 3});
+        faces.pop_back();
+        const int open = step.add("OPEN_SHELL(''," + StepText::refs(faces) + ")");
+        std::vector<int> items{
+            step.add("SHELL_BASED_SURFACE_MODEL(''," + StepText::refs({open}) + ")")};
+        if (beside_solid) items.push_back(step.box({0, 0, 0}, {1, 1, 1}));
+        step.representation(items, step.millimetres());
+        return step;
+    };
+    const Diagnostic error = refused(with_open(false));
+    CHECK(error.status == ExitStatus::unsupported);
+    CHECK(mentions(error, "OPEN_SHELL #"));
+    CHECK(mentions(error, "4 edges"));
+    const Imported beside = imported(with_open(true));
+    CHECK(beside.model.solids.size() == 1);
+    REQUIRE(beside.diagnostics.size() == 1);
+    CHECK(beside.diagnostics[0].severity == Severity::warning);
+    CHECK(mentions(beside.diagnostics[0], "OPEN_SHELL #"));
+}
+
+TEST_CASE("3: a surface model on the shell of a solid is not another solid") {
+    StepText step;
+    const int shell = step.box_shell({0, 0, 0}, {1, 1, 1});
+    const int solid = step.add("MANIFOLD_SOLID_BREP(''," + StepText::ref(shell) + ")");
+    const int skin = step.add("SHELL_BASED_SURFACE_MODEL(''," + StepText::refs({shell}) + ")");
+    step.representation({skin, solid}, step.millimetres());
+    CHECK(imported(step).model.solids.size() == 1);
+}
+
+TEST_CASE("3: a sphere of one face bounded by a vertex loop, or by nothing") {
+    for (const bool bounded : {true, false}) {
+        StepText step;
+        const int at = step.placement({1, 2, 3}, Vector3::UnitZ(), Vector3::UnitX());
+        const int sphere = step.add("SPHERICAL_SURFACE(''," + StepText::ref(at) + ",4.)");
+        std::vector<int> bounds;
+        if (bounded) {
+            const int loop =
+                step.add("VERTEX_LOOP(''," + StepText::ref(step.vertex({1, 2, -1})) + ")");
+            bounds.push_back(step.bound(loop));
+        }
+        const int shell =
+            step.add("CLOSED_SHELL(''," + StepText::refs({step.face(bounds, sphere)}) + ")");
+        step.representation({step.add("MANIFOLD_SOLID_BREP(''," + StepText::ref(shell) + ")")},
+                            step.millimetres());
+        const Model model = imported(step).model;
+        REQUIRE(model.faces.size() == 1);
+        CHECK(model.faces[0].loop_count == (bounded ? 1 : 0));
+        CHECK(std::get<Sphere>(model.faces[0].surface).radius_mm == 4);
+        if (bounded) CHECK(model.loops[0].coedge_count == 0);
+    }
+}
+
+TEST_CASE("1: a solid in complex form") {
+    StepText step;
+    const int shell = step.box_shell({0, 0, 0}, {2, 2, 2});
+    const int inner = step.box_shell({0.5, 0.5, 0.5}, {1, 1, 1});
+    const int oriented = step.add("ORIENTED_CLOSED_SHELL('',*," + StepText::ref(inner) + ",.F.)");
+    const int solid =
+        step.add("(BREP_WITH_VOIDS((" + StepText::ref(oriented) +
+                 "))GEOMETRIC_REPRESENTATION_ITEM()MANIFOLD_SOLID_BREP(" + StepText::ref(shell) +
+                 ")REPRESENTATION_ITEM('complex')SOLID_MODEL())");
+    step.representation({solid}, step.millimetres());
+    const Model model = imported(step).model;
+    CHECK(model.shells.size() == 2);
+    CHECK(plane_volume(model) == doctest::Approx(8 - 0.125));
+}
+
+TEST_CASE("1: axes that are missing or parallel are chosen as the standard does") {
+    const auto plane_frame = [](const std::string& axis, const std::string& reference) {
+        StepText step;
+        const int origin = step.point({0, 0, 0});
+        const int at = step.add("AXIS2_PLACEMENT_3D(''," + StepText::ref(origin) + "," + axis +
+                                "," + reference + ")");
+        const int sphere = step.add("SPHERICAL_SURFACE(''," + StepText::ref(at) + ",1.)");
+        step.define(900, "DIRECTION('',(0.,0.,2.))");
+        step.define(901, "DIRECTION('',(3.,0.,0.))");
+        step.define(902, "DIRECTION('',(1.,0.,1.))");
+        const int shell =
+            step.add("CLOSED_SHELL(''," + StepText::refs({step.face({}, sphere)}) + ")");
+        step.representation({step.add("MANIFOLD_SOLID_BREP(''," + StepText::ref(shell) + ")")},
+                            step.millimetres());
+        return std::get<Sphere>(imported(step).model.faces.at(0).surface).frame;
+    };
+    const auto is = [](const Frame& frame, const Vector3& z, const Vector3& x) {
+        return near(frame.z, z) && near(frame.x, x) && near(frame.y, z.cross(x));
+    };
+    const Vector3 x = Vector3::UnitX(), y = Vector3::UnitY(), z = Vector3::UnitZ();
+    CHECK(is(plane_frame("$", "$"), z, x));
+    CHECK(is(plane_frame("#901", "$"), x, y));
+    CHECK(is(plane_frame("#900", "#900"), z, x));
+    CHECK(is(plane_frame("#901", "#901"), x, y));
+    CHECK(is(plane_frame("#900", "#902"), z, x));
+    CHECK(is(plane_frame("$", "#902"), z, x));
+}
