@@ -74,12 +74,12 @@ Point2 parameters_of(const Sphere& s, const Point3& point) {
 Point2 parameters_of(const Torus& s, const Point3& point) {
     const Point3 local = s.frame.to_local(point);
     const double distance = std::hypot(local.x(), local.y());
-    const double near = distance - s.major_mm, far = distance + s.major_mm;
-    // Where the tube is wider than the ring, a point may be nearest to the part that crosses the axis.
-    const bool across = std::abs(std::hypot(near, local.z()) - s.minor_mm) >
-                        std::abs(std::hypot(far, local.z()) - s.minor_mm);
-    if (!across) return {direction_angle(local.y(), local.x()), direction_angle(local.z(), near)};
-    return {direction_angle(-local.y(), -local.x()), direction_angle(local.z(), -far)};
+    if (!beyond_axis(s, point)) {
+        return {direction_angle(local.y(), local.x()),
+                direction_angle(local.z(), distance - s.major_mm)};
+    }
+    return {direction_angle(-local.y(), -local.x()),
+            direction_angle(local.z(), -distance - s.major_mm)};
 }
 
 double uniform_scale(const Eigen::Affine3d& transform) {
@@ -87,6 +87,14 @@ double uniform_scale(const Eigen::Affine3d& transform) {
 }
 
 }  // namespace
+
+bool beyond_axis(const Torus& torus, const Point3& point) {
+    const Point3 local = torus.frame.to_local(point);
+    const double distance = std::hypot(local.x(), local.y());
+    const double from_near = std::hypot(distance - torus.major_mm, local.z());
+    const double from_far = std::hypot(distance + torus.major_mm, local.z());
+    return std::abs(from_near - torus.minor_mm) > std::abs(from_far - torus.minor_mm);
+}
 
 Point3 evaluate(const Surface& surface, const Point2& uv) {
     return std::visit([&](const auto& s) { return point_at(s, uv); }, surface);

@@ -44,6 +44,10 @@ struct Torus {
 
 using Surface = std::variant<Plane, Cylinder, Cone, Sphere, Torus>;
 
+// Whether the point is nearest to where the tube has crossed the axis, which it does if it is wider than the ring.
+// There d/du x d/dv points towards the tube's centre, against normal().
+bool beyond_axis(const Torus& torus, const Point3& point);
+
 Point3 evaluate(const Surface& surface, const Point2& uv);
 Vector3 normal(const Surface& surface, const Point2& uv);
 Point2 invert(const Surface& surface, const Point3& point);

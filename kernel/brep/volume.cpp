@@ -1,0 +1,336 @@
+// Line integrals along the loops of faces. With o the surface's own origin seen from c, the integral of (p - c) . n
+// over a face is o . S + r A on spheres and cylinders, o . S on planes and on cones (o the apex), and
+// o . S + m A + M K on tori, where S is the integral of n, which depends on the boundary alone, A the face's area
+// and K the integral of cos v, v the angle around the tube.
+//
+// On surfaces that close upon themselves a boundary does not say which of two regions it bounds: A and K are known
+// up to the whole surface's, and A lies between zero and the whole.
+
+#include "kernel/brep/volume.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "kernel/geometry/angle.h"
+
+namespace lyr {
+
+namespace {
+
+using std::numbers::pi;
+
+// Gauss-Legendre on [0, 1], five points: exact for polynomials of degree nine.
+constexpr std::array<double, 5> gauss_at{0.04691007703066800, 0.23076534494715845, 0.5,
+                                         0.76923465505284155, 0.95308992296933200};
+constexpr std::array<double, 5> gauss_weight{0.11846344252809454, 0.23931433524968324,
+                                             0.28444444444444444, 0.23931433524968324,
+                                             0.11846344252809454};
+
+// How many panels of five points an edge needs.
+int panels(const Edge& edge) {
+    constexpr double widest_panel_rad = pi / 8;
+    if (std::holds_alternative<Line>(edge.curve)) return 1;
+    if (const auto* spline = std::get_if<BSplineCurve>(&edge.curve)) {
+        return 2 * static_cast<int>(spline->control_points.size());
+    }
+    return 1 + static_cast<int>(std::abs(edge.t_end - edge.t_start) / widest_panel_rad);
+}
+
+// A point of a loop with the step of the integral there; at the vertices, without a step.
+struct Node {
+    Point3 point;
+    Vector3 step;
+};
+
+using LoopNodes = std::vector<Node>;
+
+LoopNodes nodes_of(const Model& model, const Loop& loop) {
+    LoopNodes nodes;
+    for (std::uint32_t c = loop.first_coedge; c < loop.first_coedge + loop.coedge_count; ++c) {
+        const Coedge& use = model.coedges[c];
+        const Edge& edge = model[use.edge];
+        const double from = use.reversed ? edge.t_end : edge.t_start;
+        const double to = use.reversed ? edge.t_start : edge.t_end;
+        const int count = panels(edge);
+        const double width = (to - from) / count;
+        nodes.push_back({evaluate(edge.curve, from), Vector3::Zero()});
+        for (int panel = 0; panel < count; ++panel) {
+            for (std::size_t i = 0; i < gauss_at.size(); ++i) {
+                const double t = from + (panel + gauss_at[i]) * width;
+                nodes.push_back(
+                    {evaluate(edge.curve, t), gauss_weight[i] * width * derivative(edge.curve, t)});
+            }
+        }
+    }
+    return nodes;
+}
+
+using FaceNodes = std::vector<LoopNodes>;
+
+// The integral of the outward normal: half of p x dp around the loops.
+Vector3 vector_area(const FaceNodes& face, const Point3& c) {
+    Vector3 sum = Vector3::Zero();
+    for (const LoopNodes& loop : face) {
+        for (const Node& node : loop) sum += (node.point - c).cross(node.step);
+    }
+    return sum / 2;
+}
+
+// Angle about the axis at a node, its step, and the coordinates that go with it.
+struct AroundAxis {
+    double x, y, z, step_x, step_y, step_z;
+
+    AroundAxis(const Frame& frame, const Node& node) {
+        const Point3 p = frame.to_local(node.point);
+        x = p.x();
+        y = p.y();
+        z = p.z();
+        step_x = node.step.dot(frame.x);
+        step_y = node.step.dot(frame.y);
+        step_z = node.step.dot(frame.z);
+    }
+    double radius() const { return std::hypot(x, y); }
+    double angle_step() const {
+        const double square = x * x + y * y;
+        return square > 0 ? (x * step_y - y * step_x) / square : 0;
+    }
+};
+
+double cylinder_area(const Cylinder& cylinder, const FaceNodes& face) {
+    double sum = 0;
+    for (const LoopNodes& loop : face) {
+        for (const Node& node : loop) {
+            const AroundAxis at(cylinder.frame, node);
+            sum += at.z * at.angle_step();
+        }
+    }
+    return std::abs(cylinder.radius_mm * sum);
+}
+
+double handedness(const Frame& frame) {
+    return frame.x.cross(frame.y).dot(frame.z) < 0 ? -1 : 1;
+}
+
+// How many times `whole` has to be added to bring `value` into (0, whole]. A boundary that cancels bounds the whole.
+double turns_to_add(double value, double whole) {
+    constexpr double closeness = 1e-8;  // a smaller share of the whole is no face but round-off
+    return -std::floor(value / whole - closeness);
+}
+
+// An axis that stays away from the loops: where they come near a pole, the angle about it changes abruptly.
+Frame clear_axis(const Sphere& sphere, const FaceNodes& face) {
+    const std::array<Vector3, 7> candidates{Vector3(1, 0, 0), Vector3(0, 1, 0),  Vector3(0, 0, 1),
+                                            Vector3(1, 1, 1), Vector3(1, 1, -1), Vector3(1, -1, 1),
+                                            Vector3(-1, 1, 1)};
+    Frame best;
+    double least_sine = -1;
+    for (const Vector3& candidate : candidates) {
+        const Vector3 axis = candidate.normalized();
+        double sine = 1;
+        for (const LoopNodes& loop : face) {
+            for (const Node& node : loop) {
+                const Vector3 offset = node.point - sphere.frame.origin;
+                sine = std::min(sine, offset.cross(axis).norm() / sphere.radius_mm);
+            }
+        }
+        if (sine <= least_sine) continue;
+        least_sine = sine;
+        best = {sphere.frame.origin, axis.unitOrthogonal(), axis.cross(axis.unitOrthogonal()),
+                axis};
+    }
+    return best;
+}
+
+double sphere_area(const Sphere& sphere, const FaceNodes& face, double sense) {
+    const Frame frame = clear_axis(sphere, face);
+    double turns = 0, sum = 0;
+    for (const LoopNodes& loop : face) {
+        for (const Node& node : loop) {
+            const AroundAxis at(frame, node);
+            turns += at.angle_step();
+            sum += at.angle_step() * at.z / std::hypot(at.radius(), at.z);
+        }
+    }
+    const double solid_angle = sense * (2 * pi * std::round(turns / (2 * pi)) - sum);
+    const double whole = 4 * pi;
+    const double square = sphere.radius_mm * sphere.radius_mm;
+    return square * (solid_angle + whole * turns_to_add(solid_angle, whole));
+}
+
+struct TorusIntegrals {
+    double area, cosine;
+};
+
+// Angles along one loop, followed so that they do not jump.
+class Follower {
+public:
+    double next(double angle) {
+        if (!first_) angle += 2 * pi * std::round((last_ - angle) / (2 * pi));
+        first_ = false;
+        return last_ = angle;
+    }
+
+private:
+    bool first_ = true;
+    double last_ = 0;
+};
+
+TorusIntegrals torus_integrals(const Torus& torus, const FaceNodes& face, double sense) {
+    const double major = torus.major_mm, minor = torus.minor_mm;
+    TorusIntegrals over_v{0, 0}, over_u{0, 0};
+    double turns_v = 0;
+    for (const LoopNodes& loop : face) {
+        Follower follow_u, follow_v;
+        double loop_turns_v = 0;
+        for (const Node& node : loop) {
+            const AroundAxis at(torus.frame, node);
+            const double out = at.radius() - major;
+            const double u = follow_u.next(direction_angle(at.y, at.x));
+            const double v = follow_v.next(direction_angle(at.z, out));
+            const double step_u = at.angle_step();
+            const double step_out = (at.x * at.step_x + at.y * at.step_y) / at.radius();
+            const double step_v = (out * at.step_z - at.z * step_out) / (out * out + at.z * at.z);
+            const double s = std::sin(v), c = std::cos(v);
+            over_v.area -= minor * (major * v + minor * s) * step_u;
+            over_v.cosine -= minor * (major * s + minor * (v + s * c) / 2) * step_u;
+            over_u.area += u * minor * (major + minor * c) * step_v;
+            over_u.cosine += u * minor * (major + minor * c) * c * step_v;
+            loop_turns_v += step_v;
+        }
+        turns_v += std::abs(std::round(loop_turns_v / (2 * pi)));
+    }
+    // Loops that go around the tube have to be closed up across u, others across v.
+    const TorusIntegrals& open = turns_v > 0 ? over_u : over_v;
+    const double handed = handedness(torus.frame);
+    const double area = sense * handed * open.area, cosine = sense * handed * open.cosine;
+    const double whole_area = 4 * pi * pi * major * minor,
+                 whole_cosine = 2 * pi * pi * minor * minor;
+    const double turns = turns_to_add(area, whole_area);
+    return {area + turns * whole_area, cosine + turns * whole_cosine};
+}
+
+// Where the tube is wider than the ring, the torus crosses itself: its inner part is a lemon with poles on the axis.
+bool on_lemon(const Torus& torus, const FaceNodes& face) {
+    for (const LoopNodes& loop : face) {
+        for (const Node& node : loop) {
+            if (!node.step.isZero()) return beyond_axis(torus, node.point);
+        }
+    }
+    return false;
+}
+
+// Integrals along a meridian of the lemon from its waist, where v is pi.
+TorusIntegrals along_meridian(const Torus& torus, double v) {
+    const double major = torus.major_mm, minor = torus.minor_mm, s = std::sin(v), c = std::cos(v);
+    return {-minor * (major * (v - pi) + minor * s),
+            -minor * (major * s + minor * (v - pi + s * c) / 2)};
+}
+
+TorusIntegrals lemon_integrals(const Torus& torus, const FaceNodes& face, double sense) {
+    const TorusIntegrals pole = along_meridian(torus, std::acos(-torus.major_mm / torus.minor_mm));
+    TorusIntegrals sum{0, 0};
+    for (const LoopNodes& loop : face) {
+        for (std::size_t i = 0; i < loop.size(); ++i) {
+            const AroundAxis at(torus.frame, loop[i]);
+            double step_u = at.angle_step();
+            if (loop[i].step.isZero()) {
+                // A meridian that ends in a pole goes on along another: a turn on the spot.
+                constexpr double pole_closeness = 1e-6;
+                if (at.radius() > pole_closeness * torus.minor_mm) continue;
+                const AroundAxis before(torus.frame, loop[(i + loop.size() - 1) % loop.size()]);
+                const AroundAxis after(torus.frame, loop[(i + 1) % loop.size()]);
+                step_u = std::atan2(before.x * after.y - before.y * after.x,
+                                    before.x * after.x + before.y * after.y);
+            }
+            const double v = std::atan2(-at.z, at.radius() + torus.major_mm) + pi;
+            const TorusIntegrals here = along_meridian(torus, v);
+            sum.area += (here.area - pole.area) * step_u;
+            sum.cosine += (here.cosine - pole.cosine) * step_u;
+        }
+    }
+    const TorusIntegrals whole{-4 * pi * pole.area, -4 * pi * pole.cosine};
+    const double area = sense * handedness(torus.frame) * sum.area;
+    const double turns = turns_to_add(area, whole.area);
+    return {area + turns * whole.area,
+            sense * handedness(torus.frame) * sum.cosine + turns * whole.cosine};
+}
+
+// Three times the face's part of the volume.
+double flux(const Model& model, const Face& face, const Point3& c) {
+    FaceNodes nodes;
+    for (std::uint32_t l = face.first_loop; l < face.first_loop + face.loop_count; ++l) {
+        nodes.push_back(nodes_of(model, model.loops[l]));
+    }
+    const double sense = face.same_sense ? 1 : -1;
+    const Vector3 outward = vector_area(nodes, c);
+    struct Visitor {
+        const FaceNodes& nodes;
+        double sense;
+        Vector3 outward;
+        Point3 c;
+        double operator()(const Plane& s) const { return (s.frame.origin - c).dot(outward); }
+        double operator()(const Cylinder& s) const {
+            return (s.frame.origin - c).dot(outward) +
+                   sense * s.radius_mm * cylinder_area(s, nodes);
+        }
+        double operator()(const Cone& s) const {
+            const Point3 apex =
+                s.frame.origin - s.radius_mm / std::tan(s.half_angle_rad) * s.frame.z;
+            return (apex - c).dot(outward);
+        }
+        double operator()(const Sphere& s) const {
+            return (s.frame.origin - c).dot(outward) +
+                   sense * s.radius_mm * sphere_area(s, nodes, sense);
+        }
+        double operator()(const Torus& s) const {
+            const TorusIntegrals integrals = on_lemon(s, nodes) ? lemon_integrals(s, nodes, sense)
+                                                                : torus_integrals(s, nodes, sense);
+            return (s.frame.origin - c).dot(outward) +
+                   sense * (s.minor_mm * integrals.area + s.major_mm * integrals.cosine);
+        }
+    };
+    return std::visit(Visitor{nodes, sense, outward, c}, face.surface);
+}
+
+// A point near the shell, against cancellation.
+Point3 near_point(const Model& model, const Shell& shell) {
+    for (std::uint32_t f = shell.first_face; f < shell.first_face + shell.face_count; ++f) {
+        const Face& face = model.faces[f];
+        for (std::uint32_t l = face.first_loop; l < face.first_loop + face.loop_count; ++l) {
+            if (model.loops[l].coedge_count == 0) continue;
+            return model[model[model.coedges[model.loops[l].first_coedge].edge].start].point;
+        }
+    }
+    const Face& face = model.faces[shell.first_face];
+    return std::visit([](const auto& s) { return s.frame.origin; }, face.surface);
+}
+
+}  // namespace
+
+double signed_volume_mm3(const Model& model, ShellId id) {
+    const Shell& shell = model[id];
+    const Point3 c = near_point(model, shell);
+    double sum = 0;
+    for (std::uint32_t f = shell.first_face; f < shell.first_face + shell.face_count; ++f) {
+        sum += flux(model, model.faces[f], c);
+    }
+    return sum / 3;
+}
+
+void reverse_shell(Model& model, ShellId id) {
+    const Shell& shell = model[id];
+    for (std::uint32_t f = shell.first_face; f < shell.first_face + shell.face_count; ++f) {
+        Face& face = model.faces[f];
+        face.same_sense = !face.same_sense;
+        for (std::uint32_t l = face.first_loop; l < face.first_loop + face.loop_count; ++l) {
+            const auto first = model.coedges.begin() + model.loops[l].first_coedge;
+            const auto last = first + model.loops[l].coedge_count;
+            for (auto use = first; use != last; ++use) use->reversed = !use->reversed;
+            std::reverse(first, last);
+        }
+    }
+}
+
+}  // namespace lyr

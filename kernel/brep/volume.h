@@ -1,0 +1,27 @@
+// The volume that a shell encloses, signed: which side of its faces is the material.
+//
+// By the divergence theorem, the volume is a third of the integral of (p - c) . n over the faces. On each elementary
+// surface that comes down to line integrals along the face's loops, so no face is ever divided up.
+//
+// Contract
+//  1. signed_volume_mm3(m, s) of a closed shell whose faces look away from the enclosed space is its volume; where
+//     they look into it, minus that. For edges that lie on their surfaces the error is below volume_accuracy times
+//     the volume of the shell and of the balls and rings whose surfaces it uses.
+//  2. It does not change, beyond round-off, when the model is moved; a mirroring keeps it too.
+//  3. Of a shell that does not close it says nothing.
+//  4. reverse_shell() turns a shell's faces around, loops included: the volume changes its sign.
+
+#pragma once
+
+#include "kernel/brep/model.h"
+
+namespace lyr {
+
+// Five Gauss points on each eighth of a half turn, of integrands that vary over a turn or so.
+inline constexpr double volume_accuracy = 1e-9;
+
+double signed_volume_mm3(const Model& model, ShellId shell);
+
+void reverse_shell(Model& model, ShellId shell);
+
+}  // namespace lyr
