@@ -27,19 +27,17 @@ part21::RecordIndex body(const File& file, InstanceIndex instance) {
                                      : file.record(instance, 0);
 }
 
-// What a SHAPE_DEFINITION_REPRESENTATION defines the shape of: the product definition, or the one that the aspect
-// of a shape belongs to. Not valid() for anything else.
-InstanceIndex product_of_definition(const File& file, InstanceIndex definition) {
-    // A property definition's third attribute leads to the product definition, an aspect's to a property.
+// What a SHAPE_DEFINITION_REPRESENTATION defines the shape of: a product definition (also by way of an aspect of its
+// shape) or a usage of one. Not valid() for anything else.
+InstanceIndex defined(const File& file, InstanceIndex definition) {
+    // A property definition's third attribute leads to what it is a property of, an aspect's to a property.
     constexpr int longest_way = 4;
     for (int i = 0; i < longest_way; ++i) {
         const std::string_view type = keyword(file, definition);
         const bool is_property =
             type == "PRODUCT_DEFINITION_SHAPE" || type == "PROPERTY_DEFINITION";
         const bool is_aspect = type.find("SHAPE_ASPECT") != std::string_view::npos;
-        if (!is_property && !is_aspect) {
-            return type.starts_with("PRODUCT_DEFINITION") ? definition : InstanceIndex();
-        }
+        if (!is_property && !is_aspect) return definition;
         const Result<part21::Arguments> arguments = file.arguments(definition);
         if (!arguments) return {};
         const Result<InstanceIndex> next = (*arguments)[2].as_reference();
@@ -146,10 +144,13 @@ Status RepresentationTable::read_definitions(const File& file) {
         const RepresentationId representation = find(used);
         if (!representation.valid()) return unexpected(file, instance, "a representation", used);
         representations[representation.value].is_shape = true;
-        const InstanceIndex product = product_of_definition(file, definition);
-        if (!product.valid()) continue;
-        representations[representation.value].product = product;
-        const auto [first, is_new] = by_product_.emplace(product.value, representation);
+        const InstanceIndex subject = defined(file, definition);
+        if (!subject.valid()) continue;
+        if (file.is(subject, "NEXT_ASSEMBLY_USAGE_OCCURRENCE"))
+            representations[representation.value].usage = subject;
+        if (!keyword(file, subject).starts_with("PRODUCT_DEFINITION")) continue;
+        representations[representation.value].product = subject;
+        const auto [first, is_new] = by_product_.emplace(subject.value, representation);
         if (!is_new) unite(first->second, representation);
     }
     return Done{};

@@ -23,7 +23,8 @@ struct Representation {
     std::vector<InstanceIndex> items;       // solids, surface models and mapped items
     std::vector<InstanceIndex> placements;  // AXIS2_PLACEMENT_3D among the items
     InstanceIndex product;                  // PRODUCT_DEFINITION; not valid(): none
-    bool is_shape = false;                  // and not a presentation
+    InstanceIndex usage;    // NEXT_ASSEMBLY_USAGE_OCCURRENCE whose shape it is; likewise
+    bool is_shape = false;  // and not a presentation
 };
 
 // REPRESENTATION_RELATIONSHIP in its forms.

@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "kernel/brep/edge_builder.h"
+#include "kernel/brep/volume.h"
 #include "parser/import/curves.h"
 #include "parser/import/placement.h"
 #include "parser/import/shells.h"
@@ -44,6 +45,23 @@ public:
         return Done{};
     }
 
+    // Turns a shell around that looks into its material. Files do not agree on which way a void's shell looks
+    // before its orientation flag is applied, and a surface model does not say.
+    void orient_last_shell(const ShellRecord& record, bool is_void, bool is_stated) {
+        const ShellId shell(model_.shells.size() - 1);
+        // What is open or flat has no side of its own.
+        if (open_edge_count(record) > 0) return;
+        const double volume_mm3 = signed_volume_mm3(model_, shell);
+        if (is_void ? volume_mm3 <= 0 : volume_mm3 >= 0) return;
+        reverse_shell(model_, shell);
+        if (!is_stated) return;
+        Diagnostic note =
+            file_.error(record.shell, named(file_, record.shell) +
+                                          " is stated inside out; it has been turned around");
+        note.severity = Severity::note;
+        diagnostics_.push_back(std::move(note));
+    }
+
     Model take() { return std::move(model_); }
 
 private:
@@ -73,9 +91,22 @@ private:
             return unsupported(file_, face.face, "a face on both sides of a cone's apex");
         }
         if (sides.turned()) *surface = other_nappe(std::get<Cone>(*surface));
-        model_.faces.push_back({std::move(*surface), face.same_sense, first_loop, face.loop_count,
-                                shell, file_.id(face.face)});
+        // Files give the normal of a torus as d/du x d/dv, which turns where the tube has crossed the axis.
+        const bool same_sense = face.same_sense != is_beyond_axis(*surface, first_loop);
+        model_.faces.push_back({std::move(*surface), same_sense, first_loop, face.loop_count, shell,
+                                file_.id(face.face)});
         return Done{};
+    }
+
+    bool is_beyond_axis(const Surface& surface, std::uint32_t first_loop) const {
+        const auto* torus = std::get_if<Torus>(&surface);
+        if (torus == nullptr || torus->minor_mm <= torus->major_mm) return false;
+        for (std::uint32_t l = first_loop; l < index(model_.loops); ++l) {
+            if (model_.loops[l].coedge_count == 0) continue;
+            const Edge& edge = model_[model_.coedges[model_.loops[l].first_coedge].edge];
+            return beyond_axis(*torus, evaluate(edge.curve, 0.5 * (edge.t_start + edge.t_end)));
+        }
+        return false;
     }
 
     // How far the vertices of a face on a cone go to either side of the apex, as radii.
@@ -197,6 +228,7 @@ Result<Part> read_solid(const File& file, InstanceIndex item, const Units& units
         const Result<ShellRecord> record = read_shell(file, item, shell, trail);
         if (!record) return record.error();
         if (const Status status = builder.add_shell(*record); !status) return status.error();
+        builder.orient_last_shell(*record, shell != shells->shells.front(), true);
     }
     return Part{builder.take(), {}};
 }
@@ -224,6 +256,7 @@ Result<Part> read_surface_model(const File& file, InstanceIndex item, const Unit
         }
         builder.begin_solid(name, file.id(item));
         if (const Status status = builder.add_shell(*record); !status) return status.error();
+        builder.orient_last_shell(*record, false, false);
     }
     return Part{builder.take(), std::move(open)};
 }

@@ -2,7 +2,8 @@
 //
 // Contract
 //  1. Vertices, edges and faces are shared as the file shares them; each solid has its own.
-//  2. Void shells come after the outer one and look away from the material, into the void.
+//  2. Void shells come after the outer one. Every closed shell looks away from the material, voids into the void,
+//     whichever way the file states it; where it states it the other way, a note says so.
 //  3. Surface models give one solid for each closed shell; what bounds no exact volume (a shell that does not
 //     close, triangles) is listed in `open`, as errors, and its geometry is not read.
 

@@ -20,6 +20,7 @@ namespace {
 // Of a group's representation in another's.
 struct Link {
     RepresentationId parent, child;
+    RepresentationId target;  // whose units the placement in the parent has
     InstanceIndex stated_by;  // relationship, MAPPED_ITEM or usage without a placement
     const Relationship* relationship = nullptr;  // if that is what states it
     bool child_is_first = true;                  // of the relationship's two
@@ -98,12 +99,13 @@ private:
             const bool is_shape = table_[r.first].is_shape && table_[r.second].is_shape;
             if (!occurrence && !is_shape) continue;
             const bool child_is_first = occurrence ? child_is_first_of(r) : !whole_is_first_of(r);
-            add_link({child_is_first ? r.second : r.first,
-                      child_is_first ? r.first : r.second,
-                      r.instance,
-                      &r,
-                      child_is_first,
-                      {}});
+            const RepresentationId parent = child_is_first ? r.second : r.first;
+            const RepresentationId child = child_is_first ? r.first : r.second;
+            add_link({parent, child, parent, r.instance, &r, child_is_first, {}});
+        }
+        for (const Representation& r : table_.representations) {
+            if (!r.is_shape || r.usage.valid()) continue;
+            for (const InstanceIndex item : r.items) listed_by_shapes_.insert(item.value);
         }
         for (std::size_t i = 0; i < table_.representations.size(); ++i) {
             if (!table_.representations[i].is_shape) continue;
@@ -130,9 +132,23 @@ private:
         return table_[r.first].product.valid() && !table_[r.second].product.valid();
     }
 
+    // A representation of a usage holds the mapped item that places the component. Where the assembly's own
+    // representation lists it too, it is the same placement; else the usage says what the assembly is.
+    RepresentationId whole_of_mapped(RepresentationId representation, InstanceIndex item) {
+        const InstanceIndex usage = table_[representation].usage;
+        if (!usage.valid()) return representation;
+        if (listed_by_shapes_.contains(item.value)) return {};
+        const auto found = usage_by_instance_.find(usage.value);
+        if (found == usage_by_instance_.end()) return representation;
+        const RepresentationId whole = table_.of_product(found->second->parent);
+        return whole.valid() ? whole : representation;
+    }
+
     Status add_mapped_items(RepresentationId parent) {
         for (const InstanceIndex item : table_[parent].items) {
             if (kind_of(file_, item) != ItemKind::mapped) continue;
+            const RepresentationId whole = whole_of_mapped(parent, item);
+            if (!whole.valid()) continue;
             const Result<InstanceIndex> source = mapped_attribute(item, 0);
             if (!source) return source.error();
             if (keyword(file_, *source) != "REPRESENTATION_MAP")
@@ -141,7 +157,7 @@ private:
             const InstanceIndex mapped = fields.reference(1);
             if (!fields.ok()) return fields.error();
             const RepresentationId child = table_.find(mapped);
-            if (child.valid()) add_link({parent, child, item, nullptr, true, {}});
+            if (child.valid()) add_link({whole, child, parent, item, nullptr, true, {}});
         }
         return Done{};
     }
@@ -171,7 +187,7 @@ private:
                 continue;
             if (table_.united(parent) == table_.united(child)) continue;
             if (linked.insert(key(parent, child)).second) {
-                add_link({parent, child, usage.instance, nullptr, true, {}});
+                add_link({parent, child, parent, usage.instance, nullptr, true, {}});
             }
         }
     }
@@ -289,7 +305,7 @@ private:
                                     InstanceIndex parent_user) {
         const Result<Units> child_units = units_.of_context(table_[link.child].context);
         if (!child_units) return child_units.error();
-        const Result<Units> parent_units = units_.of_context(table_[link.parent].context);
+        const Result<Units> parent_units = units_.of_context(table_[link.target].context);
         if (!parent_units) return parent_units.error();
         const Result<Eigen::Affine3d> from =
             read_transform(file_, child_user, of_child, *child_units);
@@ -358,7 +374,8 @@ private:
     part21::Trail trail_;
     std::vector<Group> groups_;  // by the representation that stands for the group
     std::vector<Link> links_;
-    std::unordered_set<std::uint32_t> listed_;  // items in any representation
+    std::unordered_set<std::uint32_t> listed_;            // items in any representation
+    std::unordered_set<std::uint32_t> listed_by_shapes_;  // in one that is not only a usage's
     std::unordered_map<std::uint32_t, const Usage*> usage_by_instance_;
     std::vector<Placed> placed_;
 };

@@ -198,6 +198,37 @@ TEST_CASE("2: an occurrence that is stated as a mapped item too is one") {
     CHECK(spans(box_of(model), {10, 0, 0}, {11, 2, 3}));
 }
 
+TEST_CASE("2: a usage may have a representation of its own for its mapped item") {
+    for (const bool listed_by_whole : {true, false}) {
+        StepText step;
+        const int context = step.millimetres();
+        const Component part = box_component(step, context);
+        const int target = step.placement({10, 0, 0}, z_axis, x_axis);
+        const int map = step.add("REPRESENTATION_MAP(" + StepText::ref(part.origin) + "," +
+                                 StepText::ref(part.representation) + ")");
+        const int item =
+            step.add("MAPPED_ITEM(''," + StepText::ref(map) + "," + StepText::ref(target) + ")");
+        const Component whole = assembly(step, "whole", context,
+                                         listed_by_whole ? std::vector{item} : std::vector<int>{});
+        const int usage =
+            step.add("NEXT_ASSEMBLY_USAGE_OCCURRENCE('','',''," + StepText::ref(whole.definition) +
+                     "," + StepText::ref(part.definition) + ",$)");
+        const int shape = step.add("PRODUCT_DEFINITION_SHAPE('',''," + StepText::ref(usage) + ")");
+        const int of_usage = step.representation({item}, context, "SHAPE_REPRESENTATION");
+        step.add("SHAPE_DEFINITION_REPRESENTATION(" + StepText::ref(shape) + "," +
+                 StepText::ref(of_usage) + ")");
+        // The whole stands within another, higher up.
+        const int high = step.placement({0, 0, 50}, z_axis, x_axis);
+        const Component top = assembly(step, "top", context, {high});
+        step.occurrence(top.definition, whole.definition, whole.representation, top.representation,
+                        whole.origin, high);
+        const Imported result = imported(step);
+        CHECK(result.diagnostics.empty());
+        CHECK(result.model.solids.size() == 1);
+        CHECK(spans(box_of(result.model), {10, 0, 50}, {11, 2, 53}));
+    }
+}
+
 TEST_CASE("2: presentation does not place a part once more") {
     StepText step;
     const int context = step.millimetres();
@@ -211,7 +242,6 @@ TEST_CASE("2: presentation does not place a part once more") {
         step.add("MAPPED_ITEM(''," + StepText::ref(map) + "," + StepText::ref(origin) + ")");
     step.representation({item}, context, "MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION");
     step.representation({solid}, context, "DRAUGHTING_MODEL_REPRESENTATION");
-    // An aspect of the part (a named body) that lists the solid again, in a representation of its own.
     const Imported result = imported(step);
     CHECK(result.model.solids.size() == 1);
     CHECK(result.diagnostics.empty());

@@ -61,22 +61,20 @@ TEST_CASE("1, 3: a cylinder with a seam") {
 }
 
 TEST_CASE("1: voids look into the void, however their shell is stated") {
-    for (const bool inside_out : {false, true}) {
+    // Files do not agree on whether the shell looks into the void before or after its orientation flag.
+    for (int bits = 0; bits < 4; ++bits) {
+        CAPTURE(bits);
+        const bool inside_out = (bits & 1) != 0, orientation = (bits & 2) != 0;
         StepText step;
         const int outer = step.box_shell({0, 0, 0}, {10, 10, 10});
-        int inner;
+        std::vector<int> faces = step.box_faces({2, 2, 2}, {5, 6, 7});
         if (inside_out) {
-            // The shell already looks into the void, and is taken as it is.
-            std::vector<int> faces;
-            for (const int face : step.box_faces({2, 2, 2}, {5, 6, 7})) {
-                faces.push_back(step.add("ORIENTED_FACE('',*," + StepText::ref(face) + ",.F.)"));
-            }
-            inner = step.add("CLOSED_SHELL(''," + StepText::refs(faces) + ")");
-        } else {
-            inner = step.box_shell({2, 2, 2}, {5, 6, 7});
+            for (int& face : faces)
+                face = step.add("ORIENTED_FACE('',*," + StepText::ref(face) + ",.F.)");
         }
+        const int inner = step.add("CLOSED_SHELL(''," + StepText::refs(faces) + ")");
         const int oriented = step.add("ORIENTED_CLOSED_SHELL('',*," + StepText::ref(inner) + "," +
-                                      StepText::flag(inside_out) + ")");
+                                      StepText::flag(orientation) + ")");
         const int solid = step.add("BREP_WITH_VOIDS('hollow'," + StepText::ref(outer) + ",(" +
                                    StepText::ref(oriented) + "))");
         step.representation({solid}, step.millimetres());
@@ -85,7 +83,47 @@ TEST_CASE("1: voids look into the void, however their shell is stated") {
         REQUIRE(result.model.solids.size() == 1);
         CHECK(result.model.solids[0].shell_count == 2);
         CHECK(plane_volume(result.model) == doctest::Approx(1000 - 3 * 4 * 5));
+        // What had to be turned around is told, but does not alarm.
+        REQUIRE(result.diagnostics.size() == (inside_out == orientation ? 0 : 1));
+        for (const Diagnostic& diagnostic : result.diagnostics) {
+            CHECK(diagnostic.severity == Severity::note);
+            CHECK(mentions(diagnostic, "ORIENTED_CLOSED_SHELL #"));
+        }
     }
+}
+
+TEST_CASE("1: a solid that is stated inside out is turned around") {
+    StepText step;
+    const int at = step.placement({1, 2, 3}, Vector3::UnitZ(), Vector3::UnitX());
+    const int sphere = step.add("SPHERICAL_SURFACE(''," + StepText::ref(at) + ",4.)");
+    const int shell =
+        step.add("CLOSED_SHELL(''," + StepText::refs({step.face({}, sphere, false)}) + ")");
+    step.representation({step.add("MANIFOLD_SOLID_BREP(''," + StepText::ref(shell) + ")")},
+                        step.millimetres());
+    const Imported result = imported(step);
+    CHECK(result.model.faces.at(0).same_sense);
+    REQUIRE(result.diagnostics.size() == 1);
+    CHECK(result.diagnostics[0].severity == Severity::note);
+}
+
+TEST_CASE("1: the lemon inside a torus that crosses itself has its normal the other way in files") {
+    StepText step;
+    const int at = step.placement({0, 0, 0}, Vector3::UnitZ(), Vector3::UnitX());
+    const int torus = step.add("TOROIDAL_SURFACE(''," + StepText::ref(at) + ",2.,5.)");
+    const int plane = step.add("PLANE(''," + StepText::ref(at) + ")");
+    const int v = step.vertex({3, 0, 0});
+    const int rim = step.edge(v, v, step.add("CIRCLE(''," + StepText::ref(at) + ",3.)"));
+    const int dome = step.face({step.bound(step.loop({step.oriented(rim, true)}))}, torus, false);
+    const int floor = step.face({step.bound(step.loop({step.oriented(rim, false)}))}, plane, false);
+    const int shell = step.add("CLOSED_SHELL(''," + StepText::refs({dome, floor}) + ")");
+    step.representation({step.add("MANIFOLD_SOLID_BREP(''," + StepText::ref(shell) + ")")},
+                        step.millimetres());
+    const Imported result = imported(step);
+    CHECK(result.diagnostics.empty());
+    check_model(result.model);
+    const Face& face = result.model.faces.at(0);
+    CHECK(face.same_sense);
+    CHECK(normal(face.surface, invert(face.surface, {3, 0, 0.01})).x() > 0.9);
 }
 
 TEST_CASE("3, 5: surface models: closed shells are solids, open ones are not") {
