@@ -130,9 +130,11 @@ Status UnitTable::read_uncertainties(InstanceIndex context, Units& units) {
 Result<UnitTable::Unit> UnitTable::read_unit(InstanceIndex unit) {
     const auto step = trail_.enter(unit);
     if (!step) return step.error();
+    const bool matters = file_->is(unit, "LENGTH_UNIT") || file_->is(unit, "PLANE_ANGLE_UNIT");
     if (file_->is(unit, "SI_UNIT")) return read_si_unit(unit);
+    // Masses, times and the like; a simple instance does not say what it measures.
+    if (!matters && file_->is_complex(unit)) return Unit{Quantity::other, 1};
     if (!file_->is(unit, "CONVERSION_BASED_UNIT")) {
-        const bool matters = file_->is(unit, "LENGTH_UNIT") || file_->is(unit, "PLANE_ANGLE_UNIT");
         if (matters) return unsupported(*file_, unit, "a unit of length or angle");
         return Unit{Quantity::other, 1};
     }

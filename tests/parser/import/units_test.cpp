@@ -114,6 +114,19 @@ TEST_CASE("1: cones with negative angles or radii are the same cones from their 
     CHECK(std::get<Cylinder>(cone("2.", "0.", in_radians)).radius_mm == 2);
 }
 
+TEST_CASE("1: units of other quantities do not matter") {
+    const Model model = box_in([](StepText& step) {
+        const int gram = step.add("(MASS_UNIT()NAMED_UNIT(*)SI_UNIT($,.GRAM.))");
+        const int measure =
+            step.add("MASS_MEASURE_WITH_UNIT(MASS_MEASURE(453.6)," + StepText::ref(gram) + ")");
+        const int pound = step.add("(CONVERSION_BASED_UNIT('POUND'," + StepText::ref(measure) +
+                                   ")MASS_UNIT()NAMED_UNIT(*))");
+        const int odd = step.add("(CONTEXT_DEPENDENT_UNIT('each')NAMED_UNIT(*))");
+        return step.context({pound, step.si_length(".CENTI."), odd});
+    });
+    CHECK(height(model) == 30);
+}
+
 TEST_CASE("3: no unit of length: millimetres, and a warning") {
     StepText step;
     step.representation({step.box({0, 0, 0}, {1, 2, 3})}, step.context({}));
