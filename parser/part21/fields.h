@@ -7,9 +7,9 @@
 //
 // Contract
 //  1. The first error stays: after it every accessor gives an empty value (0, false, "", not
-//  valid()).
+//     valid()).
 //  2. Errors are those of Value; too few or too many arguments are one ("expected 3 arguments,
-//  found 2").
+//     found 2").
 //  3. Arguments count from 0 here as in Arguments, from 1 in messages.
 
 #pragma once
@@ -45,8 +45,9 @@ public:
     List list(std::size_t index);
 
 private:
+    void take(const Result<Arguments>& arguments, std::size_t count);
     template <class T>
-    T keep(Result<T> result, T otherwise);
+    T keep(std::size_t index, Result<T> (Value::*convert)() const, T otherwise);
     template <class T>
     std::vector<T> collect(std::size_t index, Status (Value::*append)(std::vector<T>&) const);
 

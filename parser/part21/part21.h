@@ -14,23 +14,19 @@
 //
 // Contract
 //  1. No input crashes it, makes it recurse with the input's depth or makes it run for longer than
-//  in
-//     proportion to the input's size.
+//     in proportion to the input's size.
 //  2. open() succeeds only on a whole file: every instance of every DATA section is in the table,
-//  no
-//     string, comment or bracket is left open, no #id is defined twice, none is beyond 64 bits, no
-//     list is nested deeper than max_depth. Otherwise the error says where (file:line:column, #id)
-//     and what was expected.
+//     no string, comment or bracket is left open, no #id is defined twice, none is beyond 64 bits,
+//     no list is nested deeper than max_depth. Otherwise the error says where (file:line:column,
+//     #id) and what was expected.
 //  3. What is no STEP file is refused with the name of what it looks like; an IFC building model is
 //     refused with status unsupported.
 //  4. Whitespace, comments and a byte order mark may stand before ISO-10303-21;. An odd or missing
-//  header
-//     entry is a warning, as is a missing END-ISO-10303-21; after a closed DATA section.
+//     header entry is a warning, as is a missing END-ISO-10303-21; after a closed DATA section.
 //  5. ANCHOR, REFERENCE and SIGNATURE sections are passed over; the #ids that a REFERENCE section
-//  takes
-//     from other files are remembered, so that a use of one can be explained.
+//     takes from other files are remembered, so that a use of one can be explained.
 //  6. Lookup by #id takes constant time; all functions that are const may be called from several
-//  threads.
+//     threads.
 //  7. Columns count bytes, from 1. Lines end with LF, CR LF or CR.
 
 #pragma once
@@ -89,7 +85,7 @@ public:
     std::string_view keyword(KeywordId keyword) const;
 
     // Records. An instance in external mapping, #1=(A(..)B(..)), has several: it is complex. The
-    // order of records is that of the file.
+    // order of records is that of the file. (One in external mapping with a single record is simple.)
     bool is_complex(InstanceIndex instance) const;
     std::size_t record_count(InstanceIndex instance) const;
     RecordIndex record(InstanceIndex instance, std::size_t number) const;

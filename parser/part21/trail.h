@@ -1,17 +1,13 @@
 // Following references from instance to instance without running in circles or out of stack.
 //
 //     auto step = trail.enter(instance);   if (!step) return step.error();
-//     ... follow the references of `instance` ...
-//                                           // the step leaves the instance when it goes out of
-//                                           scope
+//     ... follow the references of `instance`; the step leaves it when it goes out of scope ...
 //
 // Contract
 //  1. Entering an instance that has been entered and not left is an error that spells the cycle
-//  out:
-//     "#5 refers to itself: #5 -> #7 -> #5".
+//     out: "#5 refers to itself: #5 -> #7 -> #5".
 //  2. Entering more than max_length instances at once is an error. (The longest honest chains,
-//  assembly
-//     trees down to a coordinate, are a few dozen long.)
+//     assembly trees down to a coordinate, are a few dozen long.)
 //  3. Entering and leaving take constant time and, after the first use, no allocation.
 
 #pragma once

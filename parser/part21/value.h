@@ -30,6 +30,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <span>
 #include <string>
 #include <string_view>
@@ -127,6 +128,8 @@ private:
     friend class Arguments;
     friend class List;
     Value(const Table* table, std::size_t offset, RecordIndex record, std::size_t argument);
+    static Value missing(const Table* table, std::size_t closing, RecordIndex record,
+                         std::size_t argument);
 
     const Table* table_ = nullptr;
     std::size_t offset_ = 0;
@@ -182,14 +185,15 @@ public:
 
 private:
     friend struct Table;
-    static constexpr std::size_t direct =
-        20;  // the longest records of AP203/214/242 geometry have 13
+    // The longest records of AP203/214/242 geometry have 13 arguments.
+    static constexpr std::size_t direct = 16;
 
     const Table* table_ = nullptr;
     RecordIndex record_;
-    std::uint32_t count_ = 0;
+    std::size_t count_ = 0;
     std::size_t start_ = 0;                       // offset of the opening bracket
-    std::array<std::uint32_t, direct> relative_;  // offsets of the first arguments from there
+    std::size_t end_ = 0;                         // and of the closing one
+    std::array<std::uint32_t, direct> places_{};  // the first arguments, from start_
 };
 
 }  // namespace lyr::part21

@@ -1,0 +1,39 @@
+// Marks every 64 KiB, so that a question costs one block however large the file is.
+
+#include "parser/part21/lines.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace lyr::part21 {
+namespace {
+
+bool ends_line(std::string_view text, std::size_t i) {
+    return text[i] == '\n' || (text[i] == '\r' && (i + 1 == text.size() || text[i + 1] != '\n'));
+}
+
+std::uint32_t clamp(std::size_t number) {
+    return static_cast<std::uint32_t>(
+        std::min<std::size_t>(number, std::numeric_limits<std::uint32_t>::max()));
+}
+
+}  // namespace
+
+LineColumn Lines::locate(std::string_view text, std::size_t offset) const {
+    std::call_once(once_, [&] {
+        Mark mark{1, 0};
+        for (std::size_t i = 0; i < text.size(); ++i) {
+            if (i % block == 0) marks_.push_back(mark);
+            if (ends_line(text, i)) mark = {clamp(std::size_t{mark.line} + 1), i + 1};
+        }
+        marks_.push_back(mark);
+    });
+    offset = std::min(offset, text.size());
+    Mark mark = marks_[std::min(offset / block, marks_.size() - 1)];
+    for (std::size_t i = offset / block * block; i < offset; ++i) {
+        if (ends_line(text, i)) mark = {clamp(std::size_t{mark.line} + 1), i + 1};
+    }
+    return {mark.line, clamp(offset - mark.line_start + 1)};
+}
+
+}  // namespace lyr::part21
