@@ -24,14 +24,14 @@ class StepText {
 public:
     // Adds "#n=<text>;" and returns n.
     int add(const std::string& text) {
-        body_ += "#" + std::to_string(++last_) + "=" + text + ";\n";
+        define(++last_, text);
         return last_;
     }
 
     // Takes a number for an instance that define() writes later.
     int reserve() { return ++last_; }
     void define(int id, const std::string& text) {
-        body_ += "#" + std::to_string(id) + "=" + text + ";\n";
+        body_.append(ref(id)).append("=").append(text).append(";\n");
     }
 
     std::string text() const {
@@ -41,11 +41,14 @@ public:
                body_ + "ENDSEC;\nEND-ISO-10303-21;\n";
     }
 
-    static std::string ref(int id) { return "#" + std::to_string(id); }
+    static std::string ref(int id) { return std::string("#").append(std::to_string(id)); }
     static std::string refs(const std::vector<int>& ids) {
         std::string text = "(";
-        for (const int id : ids) text += (text.size() > 1 ? "," : "") + ref(id);
-        return text + ")";
+        for (const int id : ids) {
+            if (text.size() > 1) text += ',';
+            text += ref(id);
+        }
+        return text += ')';
     }
     static std::string num(double value) {
         char text[40];
