@@ -1,0 +1,53 @@
+// The circle that an arc record stands for. An arc is stored by its end points and its sagitta s,
+// the signed height of its middle over the chord c: with t = tan(sweep / 4) = 2 s / c, radius and
+// centre follow by division alone, and stay exact where a centre would be far away.
+//
+// Contract
+//  1. |start - centre| = |end - centre| = radius up to rounding (a few ulps of the radius).
+//  2. sweep has the sign of the sagitta and is below 2 pi.
+
+#pragma once
+
+#include <cmath>
+#include <numbers>
+
+#include "format/operation.h"
+
+namespace lyr::format {
+
+struct ArcShape {
+    double center_x = 0, center_y = 0, radius = 0;  // in the unit of the input
+    double start_angle_rad = 0;
+    double sweep_rad = 0;  // signed
+
+    double length() const { return radius * std::abs(sweep_rad); }
+};
+
+// The chord must not be 0 nor the sagitta.
+inline ArcShape arc_shape(double from_x, double from_y, double to_x, double to_y, double sagitta) {
+    const double dx = to_x - from_x, dy = to_y - from_y;
+    const double chord = std::hypot(dx, dy);
+    const double t = 2 * sagitta / chord;
+    // From the chord's middle to the centre, along the left normal, in chords: (1 - t^2) / (4 t).
+    const double rise = (1 - t * t) / (4 * t);
+    ArcShape arc;
+    arc.center_x = from_x + dx / 2 - dy * rise;
+    arc.center_y = from_y + dy / 2 + dx * rise;
+    arc.radius = chord * (1 + t * t) / (4 * std::abs(t));
+    arc.start_angle_rad = std::atan2(from_y - arc.center_y, from_x - arc.center_x);
+    arc.sweep_rad = 4 * std::atan(t);
+    return arc;
+}
+
+// In quanta.
+inline ArcShape arc_shape(const Arc& arc) {
+    return arc_shape(static_cast<double>(arc.from.x), static_cast<double>(arc.from.y),
+                     static_cast<double>(arc.to.x), static_cast<double>(arc.to.y),
+                     static_cast<double>(arc.sagitta));
+}
+
+// The widest arc: tan(3/2 pi / 4) = 1 + sqrt(2). A wider one has ends so near each other that
+// rounding them would turn it about.
+inline constexpr double widest_sagitta_per_chord = (1 + std::numbers::sqrt2) / 2;
+
+}  // namespace lyr::format
