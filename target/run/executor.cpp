@@ -16,6 +16,10 @@ constexpr double rest_pace = 0.02;
 // Where steps are further apart than this, the head as good as stands.
 constexpr std::int64_t standing_ns = 20'000'000;
 
+// Braking adds to the acceleration that the path itself asks for at the time; taking this much longer
+// than the slowest axis needs leaves room for both.
+constexpr double braking_margin = 2;
+
 Diagnostic too_late(std::int64_t late_ns, std::int64_t limit_ns) {
     char text[200];
     std::snprintf(
@@ -28,8 +32,20 @@ Diagnostic too_late(std::int64_t late_ns, std::int64_t limit_ns) {
 
 }  // namespace
 
+ExecutorTiming executor_timing(const config::Printer& printer) {
+    constexpr double ns_per_s = 1e9;
+    const config::PulseTiming& pulse = printer.pulse;
+    double longest_s = 0;
+    for (const config::Axis& axis : printer.axes)
+        longest_s = std::max(longest_s, axis.max_speed_mm_s / axis.max_acceleration_mm_s2);
+    return {
+        std::max({pulse.high_ns, pulse.low_ns, pulse.direction_setup_ns, pulse.direction_hold_ns}),
+        pulse.late_limit_ns, std::llround(braking_margin * longest_s * ns_per_s)};
+}
+
 Result<bool> Executor::execute(std::span<const LineEvent> events) {
     for (const LineEvent& event : events) {
+        if (!started_ && stop_requests_.load(std::memory_order_relaxed) != 0) return false;
         if (!started_) start(event);
         const std::int64_t planned_gap_ns = event.time_ns - last_event_ns_;
         const std::optional<std::int64_t> gap_ns = paced_gap_ns(planned_gap_ns);

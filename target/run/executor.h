@@ -13,6 +13,7 @@
 //  5. After a first request to stop, time is stretched more and more, so that the head comes to rest on
 //     its path within about braking_ns and no axis loses steps; then execute() returns false. A second
 //     request stops after the pulse that is out. A long wait is left within wait_slice_ns.
+//     Before the first event a request ends it without a write.
 //  6. A failed write ends the print with its diagnostic.
 //  7. Nothing is allocated, locked or logged, and no call is made but wait and write.
 
@@ -34,6 +35,8 @@ struct ExecutorTiming {
     std::int64_t late_limit_ns = 0;
     std::int64_t braking_ns = 0;  // from full speed to rest
 };
+
+ExecutorTiming executor_timing(const config::Printer& printer);
 
 // Requests to stop so far; a signal handler counts it up.
 using StopRequests = std::atomic<int>;

@@ -2,6 +2,7 @@
 
 #include "target/run/file_path.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <variant>
@@ -49,7 +50,12 @@ Result<bool> FilePath::next(PathCurve& curve) {
 // z first on the way up and last on the way down, so that the head never cuts through the print.
 void FilePath::visit(const format::LayerStart& layer) {
     ++totals_.layers;
-    const double drawn_back_mm = reader_.layer().state.retracted_mm;
+    const format::LayerState& state = reader_.layer().state;
+    for (const format::HeaterTarget& target : state.temperatures)
+        visit(format::Temperature{target.heater, target.target_c, true});
+    for (const format::Fan& fan : state.fans) visit(fan);
+    visit(format::Tool{state.tool});
+    const double drawn_back_mm = state.retracted_mm;
     if (first_layer_) drawn_back_mm_ = drawn_back_mm;
     first_layer_ = false;
     draw_back(drawn_back_mm);
@@ -73,6 +79,33 @@ void FilePath::visit(const format::Travel& travel) {
 
 void FilePath::visit(const format::Retract& retract) {
     draw_back(retract.depth_mm);
+}
+
+void FilePath::visit(const format::Temperature& temperature) {
+    if (!(temperature.target_c > 0)) return;
+    for (format::HeaterTarget& known : demands_.hottest)
+        if (known.heater == temperature.heater) {
+            known.target_c = std::max(known.target_c, temperature.target_c);
+            return;
+        }
+    demands_.hottest.push_back({temperature.heater, temperature.target_c});
+}
+
+void FilePath::visit(const format::Fan& fan) {
+    const auto known = std::find(demands_.fans.begin(), demands_.fans.end(), fan.fan);
+    if (fan.duty > 0 && known == demands_.fans.end()) demands_.fans.push_back(fan.fan);
+}
+
+void FilePath::visit(const format::Tool& tool) {
+    demands_.highest_tool = std::max(demands_.highest_tool, tool.tool);
+}
+
+void FilePath::visit(const format::Dwell& dwell) {
+    demands_.dwell_s += dwell.time_ms / 1e3;
+}
+
+void FilePath::visit(const format::Pause&) {
+    ++demands_.pauses;
 }
 
 // Through the ends and the middle of the arc, which lies off the chord's middle by the sagitta, to the

@@ -5,11 +5,13 @@
 // Contract
 //  1. Curves follow each other without gaps from `start_mm` on; motions of no length are left out.
 //  2. The extruder's coordinate is the length of filament fed since the start, less what is drawn back.
+//  3. When next() has returned false, totals() and demands() are those of the whole file.
 
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "format/reader.h"
 #include "target/run/path_check.h"
@@ -24,6 +26,15 @@ struct PathTotals {
     std::uint64_t motions = 0;
 };
 
+// What the file asks of the machine beside motion.
+struct Demands {
+    std::vector<format::HeaterTarget> hottest;  // each heater with a target above 0, once
+    std::vector<std::uint32_t> fans;            // each fan that is ever on, once
+    std::uint32_t highest_tool = 0;
+    std::uint32_t pauses = 0;
+    double dwell_s = 0;
+};
+
 class FilePath {
 public:
     FilePath(format::Reader reader, const std::array<double, 3>& start_mm,
@@ -32,6 +43,7 @@ public:
     // The next curve, or false at the end; then `curve` is as it was.
     Result<bool> next(PathCurve& curve);
     const PathTotals& totals() const { return totals_; }
+    const Demands& demands() const { return demands_; }
 
 private:
     void visit(const format::LayerStart& layer);
@@ -40,6 +52,11 @@ private:
     void visit(const format::Circle& circle);
     void visit(const format::Travel& travel);
     void visit(const format::Retract& retract);
+    void visit(const format::Temperature& temperature);
+    void visit(const format::Fan& fan);
+    void visit(const format::Tool& tool);
+    void visit(const format::Dwell& dwell);
+    void visit(const format::Pause& pause);
     template <class Other>
     void visit(const Other&) {}
 
@@ -57,6 +74,7 @@ private:
     double drawn_back_mm_ = 0;
     bool first_layer_ = true;
     PathTotals totals_;
+    Demands demands_;
     std::array<PathCurve, 4> waiting_;  // one operation makes no more
     std::size_t waiting_from_ = 0, waiting_to_ = 0;
 };

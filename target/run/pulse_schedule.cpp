@@ -20,6 +20,12 @@ PulseSchedule::PulseSchedule(const config::PulseTiming& timing, gpio::LineMask i
     open_.reserve(6 * config::axis_count);
 }
 
+void PulseSchedule::begin(std::int64_t delay_ns, std::vector<LineEvent>& events) {
+    events.push_back({0, levels_});
+    shift_ns_ += delay_ns;
+    shifts_.push_back({0, shift_ns_});
+}
+
 void PulseSchedule::append(std::span<const Step> steps, std::vector<LineEvent>& events) {
     for (const Step& next : steps) step(next, events);
 }
@@ -64,8 +70,14 @@ void PulseSchedule::emit_before(std::int64_t time_ns, std::vector<LineEvent>& ev
     open_.erase(open_.begin(), edge);
 }
 
-void PulseSchedule::finish(std::vector<LineEvent>& events) {
-    if (!open_.empty()) emit_before(open_.back().time_ns + 1, events);
+void PulseSchedule::finish(std::int64_t end_ns, std::vector<LineEvent>& events) {
+    std::int64_t last_ns = end_ns + shift_ns_;
+    for (const AxisState& axis : axes_)
+        last_ns = std::max({last_ns, axis.fall_ns, axis.rise_ns + timing_.direction_hold_ns});
+    emit_before(last_ns, events);
+    open_.clear();
+    levels_ = 0;
+    events.push_back({last_ns, levels_});
 }
 
 std::vector<Shift> PulseSchedule::take_shifts() {

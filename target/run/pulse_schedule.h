@@ -47,10 +47,13 @@ public:
     // `idle` are the levels of all other lines, such as enable.
     PulseSchedule(const config::PulseTiming& timing, gpio::LineMask idle);
 
+    // An event at time 0 that sets the idle lines; steps come `delay_ns` later than they say.
+    void begin(std::int64_t delay_ns, std::vector<LineEvent>& events);
     // Steps in order of time, from all axes together. What is certain by then is appended to `events`.
     void append(std::span<const Step> steps, std::vector<LineEvent>& events);
-    // What is still open. The next steps must not be earlier than the end of the last pulse.
-    void finish(std::vector<LineEvent>& events);
+    // What is still open, and at `end_ns` (in time of the steps), or as soon after the last edges as
+    // drivers allow, an event that makes all lines inactive.
+    void finish(std::int64_t end_ns, std::vector<LineEvent>& events);
 
     std::int64_t shift_ns() const { return shift_ns_; }
     // Growths of the shift since the last call.

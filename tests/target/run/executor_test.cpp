@@ -33,7 +33,7 @@ std::vector<LineEvent> train(std::size_t steps, std::int64_t gap_ns) {
         schedule.append(std::span(&x, 1), events);
         if (i % 3 == 0) schedule.append(std::span(&y, 1), events);
     }
-    schedule.finish(events);
+    schedule.finish(0, events);
     return events;
 }
 

@@ -20,7 +20,7 @@ const config::PulseTiming timing{2'000, 3'000, 700, 400, 5'000'000};
 std::vector<LineEvent> schedule_all(const std::vector<Step>& steps, PulseSchedule& schedule) {
     std::vector<LineEvent> events;
     schedule.append(steps, events);
-    schedule.finish(events);
+    schedule.finish(0, events);
     return events;
 }
 
@@ -160,7 +160,7 @@ TEST_CASE("schedule: appended in pieces of any size it gives the same events") {
         pieces.append(std::span(steps).subspan(i, size), events);
         i += size;
     }
-    pieces.finish(events);
+    pieces.finish(0, events);
     REQUIRE(events.size() == expected.size());
     CHECK(std::equal(events.begin(), events.end(), expected.begin(),
                      [](const auto& a, const auto& b) {

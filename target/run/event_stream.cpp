@@ -1,0 +1,30 @@
+// Steps come in batches; each becomes events as far as they are certain.
+
+#include "target/run/event_stream.h"
+
+namespace lyr::run {
+
+Result<EventStream> EventStream::open(const std::string& path, const config::Printer& printer,
+                                      double filament_diameter_mm) {
+    Result<StepStream> steps = StepStream::open(path, printer, filament_diameter_mm);
+    if (!steps) return steps.error();
+    return EventStream(std::move(*steps),
+                       PulseSchedule(printer.pulse, line_layout(printer).enable));
+}
+
+Result<bool> EventStream::next(std::vector<LineEvent>& events) {
+    if (!begun_) schedule_.begin(driver_wake_ns, events);
+    begun_ = true;
+    if (ended_) return false;
+    batch_.clear();
+    const Result<bool> more = steps_.next(batch_);
+    if (!more) return more.error();
+    schedule_.append(batch_, events);
+    if (!*more) {
+        schedule_.finish(steps_.time_ns(), events);
+        ended_ = true;
+    }
+    return true;
+}
+
+}  // namespace lyr::run

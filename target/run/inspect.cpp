@@ -1,0 +1,111 @@
+// One pass of FilePath with a box around each curve.
+
+#include "target/run/inspect.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+namespace lyr::run {
+namespace {
+
+using config::axis_names;
+using config::axis_x;
+using config::axis_y;
+using config::axis_z;
+
+// Ends that are exactly on the limit must not fail by the rounding of a centre: far below a step.
+constexpr double rounding_mm = 1e-6;
+
+struct Box {
+    AxisValues low_mm, high_mm;
+
+    void include(const AxisValues& point_mm) {
+        for (std::size_t i = 0; i < point_mm.size(); ++i) {
+            low_mm[i] = std::min(low_mm[i], point_mm[i]);
+            high_mm[i] = std::max(high_mm[i], point_mm[i]);
+        }
+    }
+};
+
+Box box_of(const PathCurve& curve) {
+    Box box{curve.from_mm, curve.from_mm};
+    box.include(curve.to_mm);
+    if (!curve.is_arc) return box;
+    // Turning points are at whole quarter turns.
+    constexpr double quarter_rad = std::numbers::pi / 2;
+    const double from = curve.start_angle_rad, to = from + curve.sweep_rad;
+    const double last = std::max(from, to) / quarter_rad;
+    for (double quarter = std::ceil(std::min(from, to) / quarter_rad); quarter <= last; ++quarter)
+        box.include(curve.at((quarter * quarter_rad - from) / curve.sweep_rad));
+    return box;
+}
+
+Status check_range(const Box& box, const PathCurve& curve, const config::Printer& printer) {
+    for (const std::size_t i : {axis_x, axis_y, axis_z}) {
+        const config::Axis& axis = printer.axes[i];
+        const bool below = box.low_mm[i] < axis.min_mm - rounding_mm;
+        if (!below && !(box.high_mm[i] > axis.max_mm + rounding_mm)) continue;
+        char text[200];
+        std::snprintf(
+            text, sizeof text,
+            "the path goes to %.3f mm on axis %s, whose range is %g to %g mm (range_mm of the "
+            "printer)",
+            below ? box.low_mm[i] : box.high_mm[i], std::string(axis_names[i]).c_str(), axis.min_mm,
+            axis.max_mm);
+        Diagnostic error{Severity::error, ExitStatus::machine, text, {}};
+        error.where.layer = static_cast<int>(curve.layer) + 1;
+        return error;
+    }
+    return Done{};
+}
+
+}  // namespace
+
+Result<format::Reader> open_file(const std::string& path) {
+    return format::Reader::open(path, {.keep_thumbnails = false, .keep_configuration = false});
+}
+
+Result<Inspection> inspect(const std::string& path, const config::Printer& printer) {
+    Result<format::Reader> reader = open_file(path);
+    if (!reader) return reader.error();
+    Inspection inspection;
+    inspection.header = reader->header();
+    inspection.filament_diameter_mm =
+        printer.filament_diameter_mm.value_or(inspection.header.metadata.filament_diameter_mm);
+    if (!(inspection.filament_diameter_mm > 0))
+        return Diagnostic{
+            Severity::error,
+            ExitStatus::input,
+            "the file states no filament diameter; set filament_diameter_mm of the printer",
+            {.file = path}};
+    FilePath file(std::move(*reader), printer.start_mm, inspection.filament_diameter_mm);
+    PathCurve curve;
+    Box all{};
+    for (std::size_t i = 0; i < printer.start_mm.size(); ++i)
+        all.low_mm[i] = all.high_mm[i] = printer.start_mm[i];
+    for (;;) {
+        const Result<bool> more = file.next(curve);
+        if (!more) return more.error();
+        if (!*more) break;
+        const Box box = box_of(curve);
+        if (const Status in_range = check_range(box, curve, printer); !in_range)
+            return in_range.error();
+        all.include(box.low_mm);
+        all.include(box.high_mm);
+    }
+    inspection.totals = file.totals();
+    inspection.demands = file.demands();
+    if (inspection.demands.highest_tool > 0)
+        return Diagnostic{Severity::error,
+                          ExitStatus::unsupported,
+                          "the file uses tool " + std::to_string(inspection.demands.highest_tool) +
+                              "; this printer has tool 0 only",
+                          {.file = path}};
+    inspection.low_mm = all.low_mm;
+    inspection.high_mm = all.high_mm;
+    return inspection;
+}
+
+}  // namespace lyr::run

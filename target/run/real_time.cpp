@@ -1,0 +1,41 @@
+// Both need a privilege that systemd or /etc/security/limits.conf can grant.
+
+#include "target/run/real_time.h"
+
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace lyr::run {
+namespace {
+
+// Above everything that is not the kernel's own: its interrupt threads have 50.
+constexpr int precedence = 49;
+
+Diagnostic refused(const std::string& what, int error, const std::string& remedy) {
+    return {Severity::warning,
+            ExitStatus::ok,
+            what + " was refused (" + std::strerror(error) + "): steps may come late; " + remedy,
+            {}};
+}
+
+}  // namespace
+
+void lock_memory(Diagnostics& warnings) {
+    if (::mlockall(MCL_CURRENT | MCL_FUTURE) != 0)
+        warnings.push_back(
+            refused("locking memory", errno, "grant CAP_IPC_LOCK or raise `ulimit -l`"));
+}
+
+void take_precedence(Diagnostics& warnings) {
+    sched_param parameters{};
+    parameters.sched_priority = precedence;
+    if (const int error = ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameters))
+        warnings.push_back(
+            refused("real-time scheduling", error, "grant CAP_SYS_NICE or raise `ulimit -r`"));
+}
+
+}  // namespace lyr::run

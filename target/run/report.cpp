@@ -1,0 +1,203 @@
+// What a simulation found, for people and for programs.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+
+#include "target/run/simulate.h"
+
+namespace lyr::run {
+namespace {
+
+using config::axis_count;
+using config::axis_names;
+
+constexpr double half_step = 0.5;
+constexpr double ns_per_s = 1e9;
+constexpr double ns_per_us = 1e3;
+// Of positions in double precision, in steps: far above rounding, far below anything a motor does.
+constexpr double rounding_steps = 1e-6;
+
+[[gnu::format(printf, 2, 3)]] void append(std::string& text, const char* format, ...) {
+    std::array<char, 512> line{};
+    std::va_list values;
+    va_start(values, format);
+    std::vsnprintf(line.data(), line.size(), format, values);
+    va_end(values);
+    text += line.data();
+}
+
+std::string duration_text(double time_s) {
+    const auto whole_s = static_cast<long long>(time_s);
+    std::string text;
+    if (whole_s >= 3600) append(text, "%lld h ", whole_s / 3600);
+    if (whole_s >= 60) append(text, "%lld min ", whole_s / 60 % 60);
+    append(text, "%.3f s", std::fmod(time_s, 60));
+    return text;
+}
+
+double rate_hz(const PulseFigures& figures) {
+    return figures.shortest_interval_ns
+               ? ns_per_s / static_cast<double>(*figures.shortest_interval_ns)
+               : 0;
+}
+
+std::string microseconds(const std::optional<std::int64_t>& duration_ns) {
+    if (!duration_ns) return "-";
+    std::string text;
+    append(text, "%.3f", static_cast<double>(*duration_ns) / ns_per_us);
+    return text;
+}
+
+void append_axes(std::string& text, const SimulationReport& report) {
+    append(text, "  %-4s %12s %12s %10s %13s %13s %11s %11s %11s\n", "axis", "steps", "net",
+           "reversals", "shortest us", "longest us", "steps/s", "off file", "off plan");
+    for (std::size_t i = 0; i < axis_count; ++i) {
+        const PulseFigures& pulses = report.pulses[i];
+        append(text, "  %-4s %12llu %12lld %10llu %13s %13s %11.0f %11.6f %11.6f\n",
+               std::string(axis_names[i]).c_str(), static_cast<unsigned long long>(pulses.steps),
+               static_cast<long long>(report.positions[i]),
+               static_cast<unsigned long long>(pulses.reversals),
+               microseconds(pulses.shortest_interval_ns).c_str(),
+               microseconds(pulses.longest_interval_ns).c_str(), rate_hz(pulses),
+               report.path.steps[i], report.planned_steps[i]);
+    }
+}
+
+// Shortest over all axes of one figure.
+std::optional<std::int64_t> shortest(const SimulationReport& report,
+                                     std::optional<std::int64_t> PulseFigures::*figure) {
+    std::optional<std::int64_t> result;
+    for (const PulseFigures& pulses : report.pulses)
+        if (const auto& value = pulses.*figure; value && (!result || *value < *result))
+            result = value;
+    return result;
+}
+
+struct Spacing {
+    const char* name;
+    std::optional<std::int64_t> PulseFigures::*figure;
+    std::int64_t config::PulseTiming::*needed;
+};
+constexpr std::array<Spacing, 4> spacings{{
+    {"high", &PulseFigures::shortest_high_ns, &config::PulseTiming::high_ns},
+    {"low", &PulseFigures::shortest_low_ns, &config::PulseTiming::low_ns},
+    {"direction_setup", &PulseFigures::shortest_setup_ns, &config::PulseTiming::direction_setup_ns},
+    {"direction_hold", &PulseFigures::shortest_hold_ns, &config::PulseTiming::direction_hold_ns},
+}};
+
+std::string quoted(const std::string& value) {
+    std::string text = "\"";
+    for (const char c : value) {
+        if (c == '"' || c == '\\')
+            (text += '\\') += c;
+        else if (static_cast<unsigned char>(c) < 0x20)
+            append(text, "\\u%04x", static_cast<unsigned>(c));
+        else
+            text += c;
+    }
+    return text + '"';
+}
+
+void append_json(std::string& text, const char* key, const std::optional<std::int64_t>& value) {
+    if (value)
+        append(text, ",\"%s\":%lld", key, static_cast<long long>(*value));
+    else
+        append(text, ",\"%s\":null", key);
+}
+
+void append_json_axes(std::string& text, const SimulationReport& report) {
+    text += ",\"axes\":{";
+    for (std::size_t i = 0; i < axis_count; ++i) {
+        const PulseFigures& pulses = report.pulses[i];
+        append(text, "%s\"%s\":{\"steps\":%llu,\"net_steps\":%lld,\"reversals\":%llu", i ? "," : "",
+               std::string(axis_names[i]).c_str(), static_cast<unsigned long long>(pulses.steps),
+               static_cast<long long>(report.positions[i]),
+               static_cast<unsigned long long>(pulses.reversals));
+        append_json(text, "shortest_interval_ns", pulses.shortest_interval_ns);
+        append_json(text, "longest_interval_ns", pulses.longest_interval_ns);
+        append(text, ",\"max_rate_hz\":%.3f,\"off_file_steps\":%.9f,\"off_plan_steps\":%.9f}",
+               rate_hz(pulses), report.path.steps[i], report.planned_steps[i]);
+    }
+    text += '}';
+}
+
+}  // namespace
+
+double SimulationReport::worst_steps() const {
+    return std::max(path.worst_steps,
+                    *std::max_element(planned_steps.begin(), planned_steps.end()));
+}
+
+bool SimulationReport::within_limits() const {
+    for (std::size_t i = 0; i < axis_count; ++i) {
+        const config::Axis& axis = printer.axes[i];
+        const double in_a_ns = axis.max_speed_mm_s * axis.steps_per_mm / ns_per_s;
+        const double limit = half_step + in_a_ns + rounding_steps;
+        if (!(path.steps[i] <= limit) || !(planned_steps[i] <= limit)) return false;
+    }
+    return std::all_of(spacings.begin(), spacings.end(), [this](const Spacing& spacing) {
+        const auto found = shortest(*this, spacing.figure);
+        return !found || *found >= printer.pulse.*spacing.needed;
+    });
+}
+
+std::string text_of(const SimulationReport& report) {
+    const PathTotals& totals = report.inspection.totals;
+    std::string text;
+    text += report.file + " on printer \"" + report.printer.name + "\", simulated\n";
+    append(text, "  layers       %u, %llu motions\n", totals.layers,
+           static_cast<unsigned long long>(totals.motions));
+    text += "  print time   " + duration_text(report.print_time_s);
+    if (report.delayed_ns)
+        append(text, ", of it %.3f us for the drivers' edges",
+               static_cast<double>(report.delayed_ns) / ns_per_us);
+    append(text, "\n  extruded     %.3f mm with %.3f mm of %.2f mm filament\n", totals.extruded_mm,
+           totals.filament_mm, report.inspection.filament_diameter_mm);
+    append(text, "  travelled    %.3f mm\n", totals.travelled_mm);
+    append_axes(text, report);
+    text += "  pulses      ";
+    for (const Spacing& spacing : spacings)
+        append(text, " %s >= %s us%s", spacing.name,
+               microseconds(shortest(report, spacing.figure)).c_str(),
+               &spacing == &spacings.back() ? "\n" : ",");
+    const Deviation& path = report.path;
+    append(
+        text,
+        "  deviation    %.6f microsteps (axis %s, layer %u, x %.3f y %.3f z %.3f mm); %.6f mm from "
+        "the file's path\n",
+        report.worst_steps(), std::string(axis_names[path.worst_axis]).c_str(),
+        path.worst_layer + 1, path.worst_at_mm[0], path.worst_at_mm[1], path.worst_at_mm[2],
+        path.distance_mm);
+    text += report.within_limits() ? "  within half a microstep everywhere\n"
+                                   : "  NOT within half a microstep, or pulses too short\n";
+    return text;
+}
+
+std::string json_of(const SimulationReport& report) {
+    const PathTotals& totals = report.inspection.totals;
+    std::string text =
+        "{\"file\":" + quoted(report.file) + ",\"printer\":" + quoted(report.printer.name);
+    append(text, ",\"layers\":%u,\"motions\":%llu,\"print_time_s\":%.9f,\"delayed_ns\":%lld",
+           totals.layers, static_cast<unsigned long long>(totals.motions), report.print_time_s,
+           static_cast<long long>(report.delayed_ns));
+    append(text, ",\"extruded_mm\":%.6f,\"travelled_mm\":%.6f,\"filament_mm\":%.6f",
+           totals.extruded_mm, totals.travelled_mm, totals.filament_mm);
+    append(text, ",\"deviation_steps\":%.9f,\"deviation_mm\":%.9f,\"within_half_step\":%s",
+           report.worst_steps(), report.path.distance_mm,
+           report.within_limits() ? "true" : "false");
+    text += ",\"pulses\":{\"writes\":" + std::to_string(report.writes);
+    for (const Spacing& spacing : spacings)
+        append_json(text, (std::string("shortest_") + spacing.name + "_ns").c_str(),
+                    shortest(report, spacing.figure));
+    text += '}';
+    append_json_axes(text, report);
+    text += ",\"notes\":[";
+    for (const Diagnostic& note : report.notes)
+        text += (&note == &report.notes.front() ? "" : ",") + quoted(note.message);
+    return text + "]}\n";
+}
+
+}  // namespace lyr::run

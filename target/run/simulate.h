@@ -1,0 +1,68 @@
+// The print without a printer: the whole program with a virtual clock and lines that lead to a decoder.
+// What it reports is read off the lines, not taken from the plan.
+//
+// Contract
+//  1. Everything but clock and lines is what a real print runs: the same reader, interpreter, planner,
+//     pulses and executor, in the same order.
+//  2. The report's deviation is that between the positions decoded from the lines and
+//       a. the curves of the file, read and decoded a second time (path_check.h),
+//       b. the planned motion at the same time, at every step, between steps and at the end.
+//  3. within_limits() says that no axis ever deviated by more than half a step in either sense, but for
+//     what an axis moves in the nanosecond that times are rounded to; and that no pulse was shorter
+//     than the printer's file asks.
+//  4. With a trace path, the lines are written there as a wave file, which appears whole or not at all.
+
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "target/config/printer.h"
+#include "target/run/inspect.h"
+#include "target/run/path_check.h"
+#include "target/run/pulse_decoder.h"
+
+namespace lyr::run {
+
+struct Progress {
+    std::uint32_t layer = 0;  // from 1, 0: before the first
+    std::uint32_t layers = 0;
+    double time_s = 0;  // of the print
+};
+using ProgressSink = std::function<void(const Progress&)>;
+// Asked now and then; true ends the simulation with status stopped.
+using StopQuestion = std::function<bool()>;
+
+struct SimulationJob {
+    std::string file;
+    config::Printer printer;
+    std::optional<std::string> trace;
+    ProgressSink progress;
+    StopQuestion stop;
+};
+
+struct SimulationReport {
+    std::string file;
+    config::Printer printer;
+    Inspection inspection;
+    double print_time_s = 0;
+    std::int64_t delayed_ns = 0;  // of it, because drivers need time between edges
+    std::array<PulseFigures, config::axis_count> pulses;
+    StepPositions positions{};  // at the end, from the start of the print
+    std::uint64_t writes = 0;
+    Deviation path;              // 2a
+    AxisValues planned_steps{};  // 2b
+    Diagnostics notes;           // what the file asks and a simulation passes over
+
+    double worst_steps() const;
+    bool within_limits() const;
+};
+
+Result<SimulationReport> simulate(const SimulationJob& job);
+
+// For people, several lines; for programs, one JSON object.
+std::string text_of(const SimulationReport& report);
+std::string json_of(const SimulationReport& report);
+
+}  // namespace lyr::run

@@ -1,0 +1,91 @@
+// A batch ends when its buffer is full or the file is; moves of few steps share a batch.
+
+#include "target/run/step_stream.h"
+
+#include <bit>
+
+namespace lyr::run {
+namespace {
+
+constexpr std::size_t batch_events = 2048;
+
+motion::Kinematics kinematics_of(const config::Printer& printer) {
+    motion::Cartesian cartesian;
+    for (std::size_t i = 0; i < cartesian.steps_per_mm.size(); ++i)
+        cartesian.steps_per_mm[i] = printer.axes[i].steps_per_mm;
+    return cartesian;
+}
+
+void append_steps(const motion::StepEvent& event, std::vector<Step>& steps) {
+    for (unsigned motors = event.motors; motors; motors &= motors - 1) {
+        const int motor = std::countr_zero(motors);
+        steps.push_back(
+            {event.time_ns, static_cast<std::uint8_t>(motor), (event.positive >> motor & 1) != 0});
+    }
+}
+
+}  // namespace
+
+Result<StepStream> StepStream::open(const std::string& path, const config::Printer& printer,
+                                    double filament_diameter_mm) {
+    Result<format::Reader> reader = format::Reader::open(path, format::ReadOptions{false, false});
+    if (!reader) return reader.error();
+    Result<motion::Planner> planner = motion::Planner::create(motion_limits(printer));
+    if (!planner) return planner.error();
+    const motion::Point origin{printer.start_mm[0], printer.start_mm[1], printer.start_mm[2]};
+    return StepStream(Interpreter(std::move(*reader), printer, filament_diameter_mm),
+                      std::move(*planner), motion::StepGenerator(kinematics_of(printer), origin));
+}
+
+StepStream::StepStream(Interpreter interpreter, motion::Planner planner,
+                       motion::StepGenerator generator)
+    : interpreter_(std::move(interpreter)),
+      planner_(std::move(planner)),
+      generator_(std::move(generator)),
+      events_(batch_events) {}
+
+Result<bool> StepStream::next(std::vector<Step>& steps) {
+    moves_.clear();
+    std::size_t room = batch_events;
+    while (room > 0) {
+        const std::span<motion::StepEvent> wanted(events_.data(), room);
+        const std::size_t count = generator_.next(wanted);
+        for (const motion::StepEvent& event : wanted.first(count)) append_steps(event, steps);
+        room -= count;
+        if (room == 0) break;
+        motion::PlannedMove& move = moves_.emplace_back();
+        while (!planner_.pop(move)) {
+            if (read_all_) {
+                moves_.pop_back();
+                return false;
+            }
+            if (const Status planned = plan(); !planned) return planned.error();
+        }
+        layer_ = move.tag;
+        generator_.start(move);
+    }
+    return true;
+}
+
+// Feeds the planner until it is full or the file ends.
+Status StepStream::plan() {
+    while (!planner_.full()) {
+        if (!held_) {
+            Result<std::optional<Instruction>> instruction = interpreter_.next();
+            if (!instruction) return instruction.error();
+            held_ = *instruction;
+        }
+        if (!held_) {
+            read_all_ = true;
+            planner_.flush();
+            return Done{};
+        }
+        if (const auto* rest = std::get_if<Rest>(&*held_)) planner_.dwell(rest->time_s);
+        if (const auto* move = std::get_if<motion::Move>(&*held_))
+            if (const Status pushed = planner_.push(*move); !pushed) return pushed.error();
+        held_.reset();
+    }
+    return Done{};
+}
+
+}  // namespace lyr::run

@@ -1,0 +1,51 @@
+// From a .lyr file to steps: reader, interpreter, planner and step generator in a row, each pulled by
+// the next as it needs more.
+//
+// Contract
+//  1. Steps are in order of time; the first move starts at time 0.
+//  2. Memory is bounded: it does not grow with the file.
+//  3. After next(), moves() are the planned moves that the batch has begun, in order; they belong to the
+//     steps from here on.
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "target/motion/planner.h"
+#include "target/motion/step_generator.h"
+#include "target/run/interpreter.h"
+#include "target/run/pulse_schedule.h"
+
+namespace lyr::run {
+
+class StepStream {
+public:
+    static Result<StepStream> open(const std::string& path, const config::Printer& printer,
+                                   double filament_diameter_mm);
+
+    // Appends the next steps; false once there are none left.
+    Result<bool> next(std::vector<Step>& steps);
+
+    const std::vector<motion::PlannedMove>& moves() const { return moves_; }
+    // Where the move begun last ends, or a rest after it.
+    std::int64_t time_ns() const { return planner_.time_ns(); }
+    // Of the move begun last, from 1; 0 before the first.
+    std::uint32_t layer() const { return layer_; }
+
+private:
+    StepStream(Interpreter interpreter, motion::Planner planner, motion::StepGenerator generator);
+
+    Status plan();
+
+    Interpreter interpreter_;
+    motion::Planner planner_;
+    motion::StepGenerator generator_;
+    std::optional<Instruction> held_;  // for when the planner has room again
+    bool read_all_ = false;
+    std::vector<motion::PlannedMove> moves_;
+    std::vector<motion::StepEvent> events_;
+    std::uint32_t layer_ = 0;
+};
+
+}  // namespace lyr::run

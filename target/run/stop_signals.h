@@ -1,0 +1,30 @@
+// SIGINT, SIGTERM and SIGHUP as something to ask for instead of something that strikes: a print is
+// ended by its own loop, with its lines released, and never in the middle of a write.
+//
+// Contract
+//  1. From construction to destruction the three signals are blocked in the calling thread and in all
+//     threads that it starts.
+//  2. wait_ms(t) returns true as soon as one of them arrives, and false after t milliseconds without;
+//     each arrival is told once.
+
+#pragma once
+
+#include <csignal>
+
+namespace lyr::run {
+
+class StopSignals {
+public:
+    StopSignals();
+    ~StopSignals();
+    StopSignals(const StopSignals&) = delete;
+    StopSignals& operator=(const StopSignals&) = delete;
+
+    bool wait_ms(int time_ms) const;
+
+private:
+    sigset_t signals_;
+    sigset_t before_;
+};
+
+}  // namespace lyr::run
