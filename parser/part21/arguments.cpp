@@ -33,6 +33,12 @@ Value Arguments::operator[](std::size_t index) const {
     return Value(table_, table_->offset_of(p), record_, index + 1);
 }
 
+List::Iterator Arguments::begin() const {
+    if (count_ == 0) return {};
+    const Value first = (*this)[0];
+    return List::Iterator(first, table_->at(first.offset_), 1, 1);
+}
+
 Status Arguments::expect_count(std::size_t expected) const {
     if (count_ == expected) return Done{};
     const auto number = [](std::size_t count) {

@@ -202,22 +202,26 @@ Result<std::size_t> Value::read_reals(std::span<double> out) const {
     return count;
 }
 
+List::Iterator::Iterator(const Value& owner, const char* place, std::size_t argument,
+                         std::uint8_t step)
+    : step_(step), at_end_(place == nullptr) {
+    if (place) {
+        value_ = Value(owner.table_, owner.table_->offset_of(place), owner.record_, argument);
+    }
+}
+
 List::Iterator List::begin() const {
-    Iterator iterator;
-    if (!value_.table_) return iterator;
+    if (!value_.table_) return {};
     const Table& table = *value_.table_;
     const char* first = first_value(table.at(value_.offset_), table.end());
-    if (!first) return iterator;
-    iterator.at_end_ = false;
-    iterator.value_ = Value(&table, table.offset_of(first), value_.record_, value_.argument_);
-    return iterator;
+    return Iterator(value_, first, value_.argument_, 0);
 }
 
 List::Iterator& List::Iterator::operator++() {
     const Table& table = *value_.table_;
     const char* next = next_value(table.at(value_.offset_), table.end());
-    at_end_ = next == nullptr;
-    if (next) value_ = Value(&table, table.offset_of(next), value_.record_, value_.argument_);
+    const std::size_t argument = std::size_t{value_.argument_} + step_;
+    *this = Iterator(value_, next, argument, step_);
     return *this;
 }
 

@@ -148,6 +148,7 @@ class List {
 public:
     class Iterator {
     public:
+        Iterator() = default;  // at the end
         const Value& operator*() const { return value_; }
         const Value* operator->() const { return &value_; }
         Iterator& operator++();
@@ -155,7 +156,12 @@ public:
 
     private:
         friend class List;
+        friend class Arguments;
+        // `place`: of the first value, or nullptr; `step` is added to its number at each one.
+        Iterator(const Value& owner, const char* place, std::size_t argument, std::uint8_t step);
+
         Value value_;
+        std::uint8_t step_ = 0;
         bool at_end_ = true;
     };
 
@@ -175,8 +181,11 @@ private:
 class Arguments {
 public:
     std::size_t count() const { return count_; }
-    // Quick for the first `direct` arguments. Asking beyond count() gives an unset value whose
-    // error names the argument that is missing.
+    // for (const Value& argument : arguments)
+    List::Iterator begin() const;
+    std::default_sentinel_t end() const { return {}; }
+    // Walks from the argument `direct` on. Asking beyond count() gives an unset value whose error
+    // names the argument that is missing.
     Value operator[](std::size_t index) const;
 
     RecordIndex record() const { return record_; }

@@ -42,7 +42,7 @@ private:
         ++decoded_.records;
         const Result<Arguments> arguments = file_.arguments(record);
         if (!arguments) return error(arguments.error());
-        for (std::size_t i = 0; i < arguments->count(); ++i) value((*arguments)[i], 1);
+        for (const Value& argument : *arguments) value(argument, 1);
     }
 
     void value(const Value& value, std::size_t depth) {
@@ -50,15 +50,24 @@ private:
         decoded_.deepest = std::max(decoded_.deepest, depth);
         switch (value.kind()) {
             case Kind::unset:
-            case Kind::derived: return;
-            case Kind::integer: check(value.as_integer()); return;
-            case Kind::real: real(value); return;
+            case Kind::derived:
+                return;
+            case Kind::integer:
+                check(value.as_integer());
+                return;
+            case Kind::real:
+                real(value);
+                return;
             case Kind::string:
                 ++decoded_.strings;
                 check(value.as_string());
                 return;
-            case Kind::binary: check(value.as_binary()); return;
-            case Kind::enumeration: check(value.as_enumeration()); return;
+            case Kind::binary:
+                check(value.as_binary());
+                return;
+            case Kind::enumeration:
+                check(value.as_enumeration());
+                return;
             case Kind::value_reference:
             case Kind::constant:
             case Kind::reference:
@@ -70,7 +79,9 @@ private:
                 for (const Value& member : *list) this->value(member, depth + 1);
                 return;
             }
-            case Kind::typed: this->value(value.as_typed()->value, depth + 1); return;
+            case Kind::typed:
+                this->value(value.as_typed()->value, depth + 1);
+                return;
         }
     }
 
@@ -95,6 +106,8 @@ private:
     Decoded decoded_;
 };
 
-inline Decoded decode_all(const File& file) { return DecodeAll(file).run(); }
+inline Decoded decode_all(const File& file) {
+    return DecodeAll(file).run();
+}
 
 }  // namespace lyr::part21
