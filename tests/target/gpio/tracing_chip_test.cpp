@@ -6,55 +6,20 @@
 
 #include <array>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <random>
-#include <sstream>
 
 #include "target/gpio/mock_chip.h"
+#include "target/gpio/wave_file.h"
 
 using namespace lyr;
 using namespace lyr::gpio;
+using lyr::tests::read_wave;
+using lyr::tests::Wave;
 
 namespace {
 
 const std::array<std::string, 3> names{"x.step", "x.dir", "y step#2"};
-
-struct Wave {
-    std::string timescale;
-    std::map<std::string, std::string> wires;                     // id -> name
-    std::map<std::int64_t, std::map<std::string, char>> changes;  // time -> name -> level
-    std::int64_t end_ns = 0;
-    std::size_t change_count = 0;
-};
-
-// Only the subset of IEEE 1364 that a dump of single wires needs.
-Wave read_wave(const std::string& path) {
-    std::ifstream file(path);
-    Wave wave;
-    std::string word;
-    while (file >> word) {
-        if (word == "$timescale") {
-            while (file >> word && word != "$end") wave.timescale += word;
-        } else if (word == "$var") {
-            std::string type, width, id, name, end;
-            file >> type >> width >> id >> name >> end;
-            CHECK(type == "wire");
-            CHECK(width == "1");
-            CHECK(end == "$end");
-            CHECK(wave.wires.emplace(id, name).second);
-        } else if (word[0] == '#') {
-            const std::int64_t time_ns = std::stoll(word.substr(1));
-            CHECK(time_ns >= wave.end_ns);
-            wave.end_ns = time_ns;
-        } else if (word[0] == '0' || word[0] == '1') {
-            REQUIRE(wave.wires.count(word.substr(1)) == 1);
-            wave.changes[wave.end_ns][wave.wires[word.substr(1)]] = word[0];
-            ++wave.change_count;
-        }
-    }
-    return wave;
-}
 
 std::string scratch(const char* name) {
     return (std::filesystem::temp_directory_path() / name).string();
