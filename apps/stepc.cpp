@@ -29,7 +29,8 @@ constexpr const char* examples =
     "  stepc part.step -o part.lyr --up 0,-1,0            print it lying on another side\n"
     "  stepc part.step --section-at z.txt --report s.jsonl   areas at heights of your own\n"
     "\n"
-    "Layer i is the section at its middle, (i - 1/2) x layer height over the bed; there are as many\n"
+    "Layer i is the section at its middle, (i - 1/2) x layer height over the bed; there are as "
+    "many\n"
     "layers as have their middle below the part's top.\n"
     "Exit status: 0 done, 2 options, 3 input, 4 not supported yet, 5 geometry, 6 output.\n";
 
@@ -39,7 +40,8 @@ void add_options(CLI::App& app, Arguments& arguments) {
     app.set_version_flag("--version", "stepc " LYR_VERSION);
     app.add_option("part", arguments.step_path, "STEP file (ISO 10303-21; AP203, AP214, AP242)")
         ->required();
-    app.add_option("-o,--output", arguments.lyr_path, "The print to write; default: the part's name with .lyr");
+    app.add_option("-o,--output", arguments.lyr_path,
+                   "The print to write; default: the part's name with .lyr");
     app.add_option("--layer-height", options.layer_height_mm, "Thickness of a layer, mm")
         ->check(CLI::Range(0.001, 10.0))
         ->capture_default_str();
@@ -51,7 +53,8 @@ void add_options(CLI::App& app, Arguments& arguments) {
         ->delimiter(',')
         ->expected(3)
         ->capture_default_str();
-    app.add_option("--at", arguments.bed_position, "Where on the bed the part's lower left corner lies, mm: x,y")
+    app.add_option("--at", arguments.bed_position,
+                   "Where on the bed the part's lower left corner lies, mm: x,y")
         ->delimiter(',')
         ->expected(2)
         ->capture_default_str();
@@ -70,13 +73,15 @@ void add_options(CLI::App& app, Arguments& arguments) {
     app.add_option("--bed-temp", options.bed_temp_c, "Bed temperature, deg C; 0: off")
         ->check(CLI::Range(0.0, 200.0))
         ->capture_default_str();
-    app.add_option("--section-at", arguments.heights_path,
-                   "Only cut at the heights of this file (mm, model coordinates, one a line); needs --report");
+    app.add_option(
+        "--section-at", arguments.heights_path,
+        "Only cut at the heights of this file (mm, model coordinates, one a line); needs --report");
     app.add_option("--report", arguments.report_path,
                    "Write a line of JSON a section: area, length, loops, lines, arcs, open ends");
     app.add_flag("--allow-open", options.allow_open,
                  "Leave out contours that do not close instead of stopping");
-    app.add_option("--threads", options.threads, "Threads; 0: one a processor; the result is the same")
+    app.add_option("--threads", options.threads,
+                   "Threads; 0: one a processor; the result is the same")
         ->check(CLI::Range(0, 1024))
         ->capture_default_str();
 }
@@ -146,7 +151,8 @@ void show_summary(const Arguments& arguments, const slicer::Summary& summary, st
     std::printf(", %.2f s, %zu warning%s\n", seconds, warnings, warnings == 1 ? "" : "s");
 }
 
-Result<slicer::Summary> run(const Arguments& arguments, ProgressLine& line, Diagnostics& diagnostics) {
+Result<slicer::Summary> run(const Arguments& arguments, ProgressLine& line,
+                            Diagnostics& diagnostics) {
     const auto progress = [&](const char* stage, std::size_t done, std::size_t total) {
         line.show(stage, done, total);
     };

@@ -38,7 +38,7 @@ struct Location {
     std::string file{};
     std::uint32_t line = 0;
     std::uint32_t column = 0;
-    std::uint64_t entity = 0;  // instance name #entity of a STEP file; 0: none
+    std::uint64_t entity = 0;    // instance name #entity of a STEP file; 0: none
     std::optional<int> layer{};  // from 1, the layer on the bed, as people count
     std::optional<double> x_mm{}, y_mm{}, z_mm{};
 };

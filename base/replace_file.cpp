@@ -13,8 +13,10 @@ namespace lyr {
 namespace {
 
 Diagnostic cannot_write(const std::string& path, int error) {
-    return {Severity::error, ExitStatus::output,
-            "cannot write: " + std::string(std::strerror(error)), {.file = path}};
+    return {Severity::error,
+            ExitStatus::output,
+            "cannot write: " + std::string(std::strerror(error)),
+            {.file = path}};
 }
 
 }  // namespace

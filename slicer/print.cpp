@@ -180,8 +180,10 @@ Result<Summary> print(Model model, const std::string& source_name, const std::st
     const Model placed = on_bed(std::move(model), options, summary.box);
     const auto middles = layer_middles(summary.box.sizes().z(), options.layer_height_mm);
     if (middles.empty()) {
-        return Diagnostic{Severity::error, ExitStatus::geometry,
-                          "the part is lower than half a layer: nothing to print", {}};
+        return Diagnostic{Severity::error,
+                          ExitStatus::geometry,
+                          "the part is lower than half a layer: nothing to print",
+                          {}};
     }
     const format::Quantum quantum = quantum_for(options.tolerance);
     auto writer = format::Writer::create(lyr_path, quantum, metadata(source_name, options));

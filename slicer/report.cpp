@@ -23,7 +23,9 @@ std::string to_json(const SectionFigures& figures) {
 
 Result<std::vector<double>> read_heights(const std::string& path) {
     std::ifstream file(path);
-    if (!file) return Diagnostic{Severity::error, ExitStatus::input, "cannot read the heights", {.file = path}};
+    if (!file)
+        return Diagnostic{
+            Severity::error, ExitStatus::input, "cannot read the heights", {.file = path}};
     std::vector<double> heights;
     std::string line;
     for (std::uint32_t number = 1; std::getline(file, line); ++number) {
@@ -40,7 +42,9 @@ Result<std::vector<double>> read_heights(const std::string& path) {
         }
         heights.push_back(height);
     }
-    if (file.bad()) return Diagnostic{Severity::error, ExitStatus::input, "cannot read the heights", {.file = path}};
+    if (file.bad())
+        return Diagnostic{
+            Severity::error, ExitStatus::input, "cannot read the heights", {.file = path}};
     return heights;
 }
 
@@ -71,8 +75,10 @@ Result<Summary> section_at(const Model& model, const std::vector<double>& height
         });
     if (Status written = report->commit(); !written) return written.error();
     if (open > 0 && !options.allow_open) {
-        return Diagnostic{Severity::error, ExitStatus::geometry,
-                          std::to_string(open) + " contour ends do not close (see the warnings)", {}};
+        return Diagnostic{Severity::error,
+                          ExitStatus::geometry,
+                          std::to_string(open) + " contour ends do not close (see the warnings)",
+                          {}};
     }
     return summary;
 }

@@ -78,8 +78,8 @@ Edge make_edge(const Curve& curve, VertexId start, VertexId end, bool same_sense
                const Model& model, double uncertainty_mm, Diagnostics& diagnostics) {
     const double allowed_mm = std::max(uncertainty_mm, resolution_mm);
     const VertexId first = same_sense ? start : end, second = same_sense ? end : start;
-    const Range range = along_parameter(curve, model[first].point, model[second].point,
-                                        start == end, allowed_mm);
+    const Range range =
+        along_parameter(curve, model[first].point, model[second].point, start == end, allowed_mm);
     Edge edge{curve, range.start, range.end, start, end, source};
     if (!same_sense) std::swap(edge.t_start, edge.t_end);
     report_distance(curve, edge.t_start, model[start], source, allowed_mm, diagnostics);

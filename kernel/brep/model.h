@@ -79,7 +79,8 @@ struct Model {
     std::vector<Face> faces;
     std::vector<Shell> shells;
     std::vector<Solid> solids;
-    double uncertainty_mm = 0;  // the file's own statement of how far its parts may be apart; 0: none
+    double uncertainty_mm =
+        0;  // the file's own statement of how far its parts may be apart; 0: none
 
     const Vertex& operator[](VertexId id) const { return vertices[id.value]; }
     const Edge& operator[](EdgeId id) const { return edges[id.value]; }

@@ -35,8 +35,7 @@ Model transformed(Model model, const Eigen::Affine3d& transform) {
 }
 
 Eigen::Affine3d turned_up(const Vector3& up) {
-    return Eigen::Affine3d(
-        Eigen::Quaterniond::FromTwoVectors(up.normalized(), Vector3::UnitZ()));
+    return Eigen::Affine3d(Eigen::Quaterniond::FromTwoVectors(up.normalized(), Vector3::UnitZ()));
 }
 
 }  // namespace lyr

@@ -6,10 +6,11 @@ namespace lyr {
 namespace {
 
 Diagnostic warning(std::string message, SourceId source, const Point3& point) {
-    return {Severity::warning,
-            ExitStatus::geometry,
-            std::move(message),
-            {.entity = source, .layer = {}, .x_mm = point.x(), .y_mm = point.y(), .z_mm = point.z()}};
+    return {
+        Severity::warning,
+        ExitStatus::geometry,
+        std::move(message),
+        {.entity = source, .layer = {}, .x_mm = point.x(), .y_mm = point.y(), .z_mm = point.z()}};
 }
 
 // Calls visit(loop) for every loop of a shell.
@@ -59,9 +60,9 @@ Diagnostics validate(const Model& model) {
             const Coedge& here = model.coedges[loop.first_coedge + c];
             const Coedge& next = model.coedges[loop.first_coedge + (c + 1) % loop.coedge_count];
             if (model.end_of(here) == model.start_of(next)) continue;
-            found.push_back(warning("the loop is not closed after edge #" +
-                                        std::to_string(model[here.edge].source),
-                                    loop.source, model[model.end_of(here)].point));
+            found.push_back(warning(
+                "the loop is not closed after edge #" + std::to_string(model[here.edge].source),
+                loop.source, model[model.end_of(here)].point));
         }
     }
     std::vector<int> excess(model.edges.size(), 0);

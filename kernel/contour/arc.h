@@ -25,7 +25,9 @@ struct ArcCircle {
     double radius_mm;
 };
 
-inline double cross(const Vector2& a, const Vector2& b) { return a.x() * b.y() - a.y() * b.x(); }
+inline double cross(const Vector2& a, const Vector2& b) {
+    return a.x() * b.y() - a.y() * b.x();
+}
 
 // The angle swept, signed, in (-2 pi, 2 pi); 0 for a line.
 double sweep_rad(const Point2& start, const Segment& segment);

@@ -70,7 +70,9 @@ int winding_around(const Frame& frame, const std::vector<Point3>& points) {
 }
 
 // A frame's handedness: +1, or -1 after a mirroring.
-double handedness(const Frame& frame) { return frame.x.cross(frame.y).dot(frame.z) < 0 ? -1 : 1; }
+double handedness(const Frame& frame) {
+    return frame.x.cross(frame.y).dot(frame.z) < 0 ? -1 : 1;
+}
 
 struct UvStep {
     Point2 from, by;
@@ -97,12 +99,12 @@ Containment::Containment(const Model& model, FaceId id, const std::vector<double
             const VertexId at = model.end_of(*next);
             rest.erase(next);
             if (at == origin) break;
-            next = std::find_if(rest.begin(), rest.end(), [&](const Coedge& coedge) {
-                return model.start_of(coedge) == at;
-            });
+            next = std::find_if(rest.begin(), rest.end(),
+                                [&](const Coedge& coedge) { return model.start_of(coedge) == at; });
         }
-        std::visit([&](const auto& s) { outline.winding = winding_around(s.frame, outline.points); },
-                   surface_);
+        std::visit(
+            [&](const auto& s) { outline.winding = winding_around(s.frame, outline.points); },
+            surface_);
         outlines_.push_back(std::move(outline));
     }
 }
@@ -194,7 +196,8 @@ bool Containment::on_torus(const Torus& torus, const Point3& point) const {
         Point2 from = Point2::Zero();
         for (std::size_t i = 0; i < outline.points.size(); ++i) {
             const Point2 to = from + uv_step(surface_, outline.points[i],
-                                             outline.points[(i + 1) % outline.points.size()]).by;
+                                             outline.points[(i + 1) % outline.points.size()])
+                                         .by;
             doubled_area += cross(from, to);
             from = to;
         }

@@ -66,9 +66,9 @@ std::vector<HeightRange> edge_ranges(const Model& model, const MonotoneEdges& ed
 HeightRange closed_component_range(const Face& face, HeightRange loops) {
     if (std::holds_alternative<Cylinder>(face.surface)) return loops;
     if (const auto* cone = std::get_if<Cone>(&face.surface)) {
-        const double apex = (cone->frame.origin -
-                             cone->radius_mm / std::tan(cone->half_angle_rad) * cone->frame.z)
-                                .z();
+        const double apex =
+            (cone->frame.origin - cone->radius_mm / std::tan(cone->half_angle_rad) * cone->frame.z)
+                .z();
         return {std::min(loops.bottom_mm, apex), std::max(loops.top_mm, apex)};
     }
     if (const auto* sphere = std::get_if<Sphere>(&face.surface)) {
@@ -144,8 +144,8 @@ Cutter::Cutter(const Model& model, const Tolerance& tolerance)
         const HeightRange range =
             closed_component_range(face, range_of_loops(model, face, edges_, ranges));
         if (!(range.bottom_mm < range.top_mm)) continue;
-        closed.push_back({range.bottom_mm, range.top_mm,
-                          static_cast<std::uint32_t>(closed_faces_.size())});
+        closed.push_back(
+            {range.bottom_mm, range.top_mm, static_cast<std::uint32_t>(closed_faces_.size())});
         closed_faces_.push_back({FaceId{f}, Containment(model, FaceId{f}, edges_.vertex_level_mm)});
     }
     closed_faces_by_height_ = IntervalIndex(std::move(closed));
@@ -176,7 +176,9 @@ HeightRange Cutter::height_range() const {
     return range;
 }
 
-SolidId Cutter::solid_of(FaceId face) const { return model_[model_[face].shell].solid; }
+SolidId Cutter::solid_of(FaceId face) const {
+    return model_[model_[face].shell].solid;
+}
 
 void Cutter::report(Work& work, std::string message, SourceId source, const Point3& point) const {
     work.section.diagnostics.push_back({Severity::error,
@@ -212,8 +214,7 @@ void Cutter::find_crossings(Work& work) const {
 
 void Cutter::cut_face(FaceId id, std::span<const Event> events, Work& work) const {
     const Face& face = model_[id];
-    const SurfaceSection section =
-        section_of(face.surface, face.same_sense, work.z_mm, extent_mm_);
+    const SurfaceSection section = section_of(face.surface, face.same_sense, work.z_mm, extent_mm_);
     std::vector<FaceCrossing> crossings;
     for (const Event& event : events) {
         crossings.push_back({event.crossing, event.enters, work.crossings[event.crossing].point});
@@ -234,9 +235,9 @@ void Cutter::cut_face(FaceId id, std::span<const Event> events, Work& work) cons
     }
     for (const std::uint32_t c : paired.unpaired) {
         ++work.section.open;
-        report(work, "the face's boundary is open: edge #" +
-                         std::to_string(model_[work.crossings[c].edge].source) +
-                         " has no counterpart",
+        report(work,
+               "the face's boundary is open: edge #" +
+                   std::to_string(model_[work.crossings[c].edge].source) + " has no counterpart",
                face.source, work.crossings[c].point);
     }
     if (paired.forced > 0) {
@@ -245,7 +246,12 @@ void Cutter::cut_face(FaceId id, std::span<const Event> events, Work& work) cons
              ExitStatus::geometry,
              "edges lie off the face's surface: " + std::to_string(paired.forced) +
                  " of its spans were joined by straight lines",
-             {.file = {}, .line = 0, .column = 0, .entity = face.source, .layer = {}, .z_mm = work.z_mm}});
+             {.file = {},
+              .line = 0,
+              .column = 0,
+              .entity = face.source,
+              .layer = {},
+              .z_mm = work.z_mm}});
     }
 }
 
@@ -255,7 +261,8 @@ void Cutter::cut_faces(Work& work) const {
         while (last < work.events.size() && work.events[last].face == work.events[first].face) {
             ++last;
         }
-        cut_face(work.events[first].face, std::span(work.events).subspan(first, last - first), work);
+        cut_face(work.events[first].face, std::span(work.events).subspan(first, last - first),
+                 work);
         first = last;
     }
 }
@@ -284,7 +291,8 @@ void Cutter::add_whole_components(Work& work) const {
             if (!closed_faces_[i].containment.holds({on.x(), on.y(), work.z_mm}, work.z_mm)) {
                 continue;
             }
-            work.contours.emplace_back(solid_of(id), whole_component(section, component, tolerance_));
+            work.contours.emplace_back(solid_of(id),
+                                       whole_component(section, component, tolerance_));
         }
     }
 }

@@ -12,11 +12,17 @@ namespace {
 
 constexpr double full_turn_rad = 2 * std::numbers::pi;
 
-Point2 flat(const Vector3& v) { return v.head<2>(); }
+Point2 flat(const Vector3& v) {
+    return v.head<2>();
+}
 
-double lean_of(const Vector3& axis) { return std::hypot(axis.x(), axis.y()); }
+double lean_of(const Vector3& axis) {
+    return std::hypot(axis.x(), axis.y());
+}
 
-Vector2 left_of(const Vector2& v) { return {-v.y(), v.x()}; }
+Vector2 left_of(const Vector2& v) {
+    return {-v.y(), v.x()};
+}
 
 SurfaceSection section_of_plane(const Plane& plane, bool same_sense) {
     const Vector3 outward = same_sense ? plane.frame.z : Vector3(-plane.frame.z);
@@ -41,8 +47,9 @@ SurfaceSection section_of_cylinder(const Cylinder& cylinder, bool same_sense, do
     const Point2 centre = flat(origin) + (z_mm - origin.z()) / rise * flat(axis);
     if (lean * extent_mm <= resolution_mm) return one_circle(centre, radius, same_sense);
     const LeaningBasis basis = leaning_basis(axis);
-    return EllipseSection{centre,        flat(axis) / lean, flat(basis.side), radius / rise,
-                          radius,        origin,            basis.across,     sense};
+    return EllipseSection{
+        centre, flat(axis) / lean, flat(basis.side), radius / rise, radius, origin, basis.across,
+        sense};
 }
 
 SurfaceSection section_of_cone(const Cone& cone, bool same_sense, double z_mm, double extent_mm) {
@@ -58,8 +65,9 @@ SurfaceSection section_of_cone(const Cone& cone, bool same_sense, double z_mm, d
     // A generator rises by cosine * rise - sine * lean * cos(u); the section is closed if all rise or all fall.
     const double least = std::abs(cosine * axis.z()) - sine * lean;
     const double middle = height > 0 ? std::numbers::pi : 0;
-    return ConeSection{apex,   leaning_basis(axis), cosine, sine, height,
-                       least > angular_resolution_rad, middle, sense};
+    return ConeSection{
+        apex, leaning_basis(axis), cosine, sine, height, least > angular_resolution_rad, middle,
+        sense};
 }
 
 SurfaceSection section_of_sphere(const Sphere& sphere, bool same_sense, double z_mm) {
@@ -105,7 +113,9 @@ Place locate(const ConeSection& cone, const Point3& p) {
     return {0, cone.sense * (cone.height_mm < 0 ? -from_middle : from_middle)};
 }
 
-Place locate(const TouchSection&, const Point3&) { return {}; }
+Place locate(const TouchSection&, const Point3&) {
+    return {};
+}
 
 // Evaluating.
 
@@ -127,7 +137,8 @@ CurvePoint at(const CircleSection& circles, const Place& place) {
 
 CurvePoint at(const EllipseSection& ellipse, const Place& place) {
     const double angle = ellipse.sense * place.key, c = std::cos(angle), s = std::sin(angle);
-    const Vector2 a = ellipse.semi_major_mm * ellipse.major, b = ellipse.semi_minor_mm * ellipse.minor;
+    const Vector2 a = ellipse.semi_major_mm * ellipse.major,
+                  b = ellipse.semi_minor_mm * ellipse.minor;
     return {ellipse.centre + c * a + s * b, ellipse.sense * (c * b - s * a).normalized()};
 }
 
@@ -143,15 +154,31 @@ CurvePoint at(const ConeSection& cone, const Place& place) {
             left_of(flat(outward)).normalized()};
 }
 
-CurvePoint at(const TouchSection&, const Place&) { return {Point2::Zero(), Vector2::UnitX()}; }
+CurvePoint at(const TouchSection&, const Place&) {
+    return {Point2::Zero(), Vector2::UnitX()};
+}
 
-double period_of(const LineSection&) { return 0; }
-double period_of(const GeneratorSection&) { return 0; }
-double period_of(const CircleSection&) { return full_turn_rad; }
-double period_of(const EllipseSection&) { return full_turn_rad; }
-double period_of(const ConeSection& cone) { return cone.closed ? full_turn_rad : 0; }
-double period_of(const TorusSection&) { return full_turn_rad; }
-double period_of(const TouchSection&) { return 0; }
+double period_of(const LineSection&) {
+    return 0;
+}
+double period_of(const GeneratorSection&) {
+    return 0;
+}
+double period_of(const CircleSection&) {
+    return full_turn_rad;
+}
+double period_of(const EllipseSection&) {
+    return full_turn_rad;
+}
+double period_of(const ConeSection& cone) {
+    return cone.closed ? full_turn_rad : 0;
+}
+double period_of(const TorusSection&) {
+    return full_turn_rad;
+}
+double period_of(const TouchSection&) {
+    return 0;
+}
 
 // The component's curve, moved so that it passes through the span's own ends.
 PlaneCurve between(const SurfaceSection& section, int component, double from, double to,

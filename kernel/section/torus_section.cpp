@@ -63,8 +63,11 @@ SurfaceSection level_circles(const Torus& torus, bool same_sense, double height_
     // The two circles are one: the plane touches the tube's top or bottom.
     if (half2 <= resolution_mm * resolution_mm) return TouchSection{};
     const double half = std::sqrt(half2);
-    return CircleSection{centre, 2, {torus.major_mm + half, std::abs(torus.major_mm - half)},
-                         {same_sense, !same_sense}, torus.major_mm};
+    return CircleSection{centre,
+                         2,
+                         {torus.major_mm + half, std::abs(torus.major_mm - half)},
+                         {same_sense, !same_sense},
+                         torus.major_mm};
 }
 
 // How far, in the tube's angle, a point is from a component's interval.
@@ -82,8 +85,16 @@ SurfaceSection torus_section(const Torus& torus, bool same_sense, double z_mm, d
     if (std::hypot(axis.x(), axis.y()) * extent_mm <= resolution_mm) {
         return level_circles(torus, same_sense, height);
     }
-    TorusSection section{torus.frame.origin, leaning_basis(axis), torus.major_mm, torus.minor_mm,
-                         height, same_sense ? 1.0 : -1.0, 0, false, {}, {}};
+    TorusSection section{torus.frame.origin,
+                         leaning_basis(axis),
+                         torus.major_mm,
+                         torus.minor_mm,
+                         height,
+                         same_sense ? 1.0 : -1.0,
+                         0,
+                         false,
+                         {},
+                         {}};
     find_components(section);
     if (section.count == 0) return TouchSection{};
     return section;
@@ -95,8 +106,7 @@ Place locate(const TorusSection& torus, const Point3& point) {
     const double v = std::atan2(offset.dot(torus.basis.axis), std::hypot(x, y) - torus.major_mm);
     const bool positive = y > 0;
     if (torus.both_ways) return {positive ? 0 : 1, torus.sense * (positive ? -v : v)};
-    const std::size_t c =
-        torus.count == 2 && outside(torus, 1, v) < outside(torus, 0, v) ? 1 : 0;
+    const std::size_t c = torus.count == 2 && outside(torus, 1, v) < outside(torus, 0, v) ? 1 : 0;
     const double middle = (torus.from_rad[c] + torus.to_rad[c]) / 2;
     const double half = (torus.to_rad[c] - torus.from_rad[c]) / 2;
     const double share = std::clamp(-std::remainder(v - middle, 2 * pi) / half, -1.0, 1.0);

@@ -6,12 +6,16 @@
 using namespace lyr;
 
 TEST_CASE("diagnostic 3: one line with every part of the place that is known") {
-    CHECK(to_string({Severity::error, ExitStatus::input, "expected ';'",
+    CHECK(to_string({Severity::error,
+                     ExitStatus::input,
+                     "expected ';'",
                      {.file = "a.step", .line = 3, .column = 14, .entity = 12}}) ==
           "a.step:3:14: error: #12: expected ';'");
     CHECK(to_string({Severity::warning, ExitStatus::geometry, "gap", {.file = "a.step"}}) ==
           "a.step: warning: gap");
-    CHECK(to_string({Severity::note, ExitStatus::ok, "healed",
+    CHECK(to_string({Severity::note,
+                     ExitStatus::ok,
+                     "healed",
                      {.entity = 7, .layer = 4, .x_mm = 1.25, .z_mm = -0.5}}) ==
           "note: #7: healed (at layer 4 x=1.250 z=-0.500)");
     CHECK(to_string({Severity::error, ExitStatus::usage, "no", {}}) == "error: no");
