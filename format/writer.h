@@ -22,7 +22,7 @@
 //  4. A caller's mistake (number not finite or out of range, extrusion before begin_path, arc of
 //     more than 3/2 pi) is kept and reported by finish(); nothing else of that layer is encoded.
 //  5. Until Writer::finish() succeeds, the file at the path is as it was; on failure nothing is
-//  left.
+//     left.
 //  6. Encoded layers wait in memory, beyond 32 MiB in an unnamed temporary file, because counts and
 //     estimates stand in front of them.
 
@@ -49,7 +49,8 @@ struct HatchInterval {
 
 struct HatchRow {
     std::uint32_t intervals = 0;  // how many of HatchRun::intervals, in order; 0: the row is empty
-    bool linked = false;  // reached by an extruded straight link from where the head is, else travel
+    // Reached by an extruded straight link from where the head is, else by travel.
+    bool linked = false;
 };
 
 // Parallel rows, pitch apart. Rows 0, 2, 4... run along the direction, rows 1, 3, 5... against it,

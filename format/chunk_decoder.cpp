@@ -1,0 +1,364 @@
+// Runs and hatches are unrolled step by step from a few counters, so that no list is ever held.
+
+#include "format/chunk_decoder.h"
+
+#include <cmath>
+
+#include "format/layout.h"
+
+namespace lyr::format {
+namespace {
+
+// Writers keep arcs within 3/2 pi (1.207); what is far beyond is no arc of theirs.
+constexpr double most_sagitta_per_chord = 1.25;
+
+constexpr std::int64_t largest_row = std::int64_t{1} << 32;
+
+bool beyond(std::int64_t value, std::int64_t limit) {
+    return value < -limit || value > limit;
+}
+
+}  // namespace
+
+void ChunkDecoder::begin_layer(const Point& start, Quantum quantum) {
+    *this = ChunkDecoder();
+    quantum_ = quantum;
+    at_ = start;
+}
+
+void ChunkDecoder::begin_chunk(std::span<const std::byte> bytes, std::uint64_t operations) {
+    cursor_ = Cursor(bytes);
+    stated_operations_ = operations;
+    operations_ = 0;
+}
+
+bool ChunkDecoder::fail(const char* error) {
+    if (!error_) error_ = cursor_.bad() ? "a number is cut short or too long" : error;
+    return false;
+}
+
+ChunkDecoder::Step ChunkDecoder::next(Operation& out) {
+    begin_offset_ = cursor_.offset();
+    while (!error_) {
+        bool given = false;
+        if (run_left_ > 0) {
+            given = decode_run(out);
+        } else if (stage_ != HatchStage::none) {
+            given = decode_hatch_step(out);
+        } else if (cursor_.at_end()) {
+            if (operations_ == stated_operations_) return Step::end;
+            fail("it has another number of operations than it says");
+        } else {
+            ++operations_;
+            given = decode(cursor_.byte(), out);
+        }
+        if (cursor_.bad()) fail("");
+        if (given && !error_) return Step::operation;
+    }
+    return Step::error;
+}
+
+bool ChunkDecoder::decode(std::uint8_t code, Operation& out) {
+    if (code < opcode::travel) {
+        run_code_ = code & opcode::run_mask;
+        run_left_ = static_cast<std::uint8_t>(code - run_code_ + 1);
+        operations_ += static_cast<std::uint64_t>(run_left_ - 1);
+        return decode_run(out);
+    }
+    if (code <= opcode::hatch) return decode_motion(code, out);
+    if (code <= opcode::travel_acceleration) return decode_style(code, out);
+    if (code >= opcode::first_skippable) {
+        cursor_.skip(cursor_.varint());
+        return false;
+    }
+    return decode_machine(code, out);
+}
+
+bool ChunkDecoder::decode_run(Operation& out) {
+    --run_left_;
+    switch (run_code_) {
+        case opcode::line:
+            return decode_line(false, out);
+        case opcode::line_z:
+            return decode_line(true, out);
+        case opcode::arc:
+            return decode_arc(false, out);
+        default:
+            return decode_arc(true, out);
+    }
+}
+
+bool ChunkDecoder::decode_motion(std::uint8_t code, Operation& out) {
+    switch (code) {
+        case opcode::travel:
+            return decode_travel(false, out);
+        case opcode::travel_z:
+            return decode_travel(true, out);
+        case opcode::circle_ccw:
+            return decode_circle(true, false, out);
+        case opcode::circle_cw:
+            return decode_circle(false, false, out);
+        case opcode::helix_ccw:
+            return decode_circle(true, true, out);
+        case opcode::helix_cw:
+            return decode_circle(false, true, out);
+        case opcode::grid:
+            return decode_grid();
+        default:
+            return decode_hatch(out);
+    }
+}
+
+bool ChunkDecoder::decode_style(std::uint8_t code, Operation& out) {
+    switch (code) {
+        case opcode::path:
+            return decode_path(out);
+        case opcode::travel_speed:
+            out = TravelSpeed{setting(scale::speed)};
+            return true;
+        case opcode::travel_acceleration:
+            out = TravelAcceleration{setting(scale::acceleration)};
+            return true;
+        default:
+            break;
+    }
+    if (!has_path_) return fail("a style is changed before a path begins");
+    switch (code) {
+        case opcode::width:
+            style_.width_mm = setting(scale::width);
+            out = Width{style_.width_mm};
+            return true;
+        case opcode::speed:
+            style_.speed_mm_s = setting(scale::speed);
+            out = Speed{style_.speed_mm_s};
+            return true;
+        case opcode::acceleration:
+            style_.acceleration_mm_s2 = setting(scale::acceleration);
+            out = Acceleration{style_.acceleration_mm_s2};
+            return true;
+        default:
+            return fail("unknown operation");
+    }
+}
+
+bool ChunkDecoder::decode_path(Operation& out) {
+    const std::uint8_t role = cursor_.byte(), fields = cursor_.byte();
+    if (fields & ~style_bit::all) return fail("a path has a field that is not known");
+    style_.role = role < role_count ? static_cast<Role>(role) : Role::other;
+    if (fields & style_bit::width) style_.width_mm = setting(scale::width);
+    if (fields & style_bit::height) style_.height_mm = setting(scale::width);
+    if (fields & style_bit::flow) style_.flow = setting(scale::flow);
+    if (fields & style_bit::speed) style_.speed_mm_s = setting(scale::speed);
+    if (fields & style_bit::acceleration) style_.acceleration_mm_s2 = setting(scale::acceleration);
+    has_path_ = true;
+    out = PathStart{style_};
+    return true;
+}
+
+bool ChunkDecoder::decode_machine(std::uint8_t code, Operation& out) {
+    switch (code) {
+        case opcode::retract:
+            out = Retract{setting(scale::filament)};
+            return true;
+        case opcode::temperature: {
+            const std::uint8_t kind = cursor_.byte();
+            const std::uint32_t tool = number();
+            const double target_c = setting(scale::temperature);
+            const std::uint8_t wait = cursor_.byte();
+            if (kind > static_cast<std::uint8_t>(HeaterKind::tool)) return fail("unknown heater");
+            out = Temperature{{static_cast<HeaterKind>(kind), tool}, target_c, wait != 0};
+            return true;
+        }
+        case opcode::fan: {
+            const std::uint32_t fan = number();
+            const double duty = setting(scale::duty);
+            if (duty > 1) return fail("a fan's duty is above 1");
+            out = Fan{fan, duty};
+            return true;
+        }
+        case opcode::dwell:
+            out = Dwell{number()};
+            return true;
+        case opcode::tool:
+            out = Tool{number()};
+            return true;
+        case opcode::pause: {
+            const std::uint8_t reason = cursor_.byte();
+            const bool known = reason <= static_cast<std::uint8_t>(PauseReason::filament_change);
+            out = Pause{known ? static_cast<PauseReason>(reason) : PauseReason::user};
+            return true;
+        }
+        case opcode::object:
+            out = Object{number()};
+            return true;
+        default:
+            return fail("unknown operation");
+    }
+}
+
+bool ChunkDecoder::decode_line(bool with_z, Operation& out) {
+    const Point from = at_, to = step(with_z);
+    if (!has_path_) return fail("extrusion before a path begins");
+    if (!in_range(to) || from == to) return false;
+    out = Line{from, to, false};
+    at_ = to;
+    return true;
+}
+
+bool ChunkDecoder::decode_arc(bool with_z, Operation& out) {
+    const Point from = at_, to = step(with_z);
+    const std::int64_t sagitta = cursor_.signed_varint();
+    if (!has_path_) return fail("extrusion before a path begins");
+    if (!in_range(to)) return false;
+    const double chord =
+        std::hypot(static_cast<double>(to.x - from.x), static_cast<double>(to.y - from.y));
+    const double rise = std::abs(static_cast<double>(sagitta));
+    if (sagitta == 0 || chord == 0 || rise > most_sagitta_per_chord * chord)
+        return fail("an arc has no or too large a sagitta");
+    out = Arc{from, to, sagitta};
+    at_ = to;
+    return true;
+}
+
+bool ChunkDecoder::decode_travel(bool with_z, Operation& out) {
+    const Point from = at_, to = step(with_z);
+    if (!in_range(to) || from == to) return false;
+    out = Travel{from, to, false};
+    at_ = to;
+    return true;
+}
+
+bool ChunkDecoder::decode_circle(bool counter_clockwise, bool with_z, Operation& out) {
+    const Point from = at_, center = step(with_z);
+    if (!has_path_) return fail("extrusion before a path begins");
+    if (!in_range(center)) return false;
+    if (center.x == from.x && center.y == from.y) return fail("a circle has no radius");
+    at_.z = center.z;
+    out = Circle{from, at_, center.x, center.y, counter_clockwise};
+    return true;
+}
+
+bool ChunkDecoder::decode_grid() {
+    grid_.a = cursor_.signed_varint();
+    grid_.b = cursor_.signed_varint();
+    grid_.offset = cursor_.signed_varint();
+    grid_.pitch = cursor_.signed_varint();
+    has_grid_ = grid_.direction_is_unit() && !beyond(grid_.offset, offset_limit) &&
+                !beyond(grid_.pitch, offset_limit);
+    return has_grid_ ? false : fail("a grid is out of range");
+}
+
+bool ChunkDecoder::decode_hatch(Operation& out) {
+    const std::uint8_t flags = cursor_.byte();
+    row_ = cursor_.signed_varint();
+    rows_left_ = cursor_.varint();
+    if (flags & ~hatch_bit::all) return fail("a hatch has a flag that is not known");
+    if (!has_path_) return fail("extrusion before a path begins");
+    if (!has_grid_) return fail("a hatch without a grid");
+    if (beyond(row_, largest_row)) return fail("a hatch row is out of range");
+    one_way_ = (flags & hatch_bit::one_way) != 0;
+    forward_ = (flags & hatch_bit::backward) == 0;
+    stage_ = HatchStage::row;
+    predictor_.begin_run();
+    out = HatchStart{static_cast<double>(grid_.a) / scale::direction,
+                     static_cast<double>(grid_.b) / scale::direction,
+                     quantum_.mm(grid_.pitch) / scale::offset};
+    return true;
+}
+
+bool ChunkDecoder::begin_hatch_row() {
+    if (rows_left_ == 0) {
+        stage_ = HatchStage::none;
+        return false;
+    }
+    const std::uint64_t head = cursor_.varint();
+    linked_ = (head & 1) != 0;
+    intervals_ = head >> 1;
+    // Each interval has two values of a byte at least.
+    if (cursor_.bad() || intervals_ > cursor_.left() / 2) return fail("a hatch row is cut short");
+    predictor_.begin_row(intervals_);
+    ends_left_ = 2 * intervals_;
+    if (intervals_ > 0) {
+        const std::optional<std::int64_t> offset = grid_.row(row_);
+        if (!offset) return fail("a hatch row is out of range");
+        row_offset_ = *offset;
+        stage_ = HatchStage::start;
+    } else {
+        end_hatch_row();
+    }
+    return true;
+}
+
+void ChunkDecoder::end_hatch_row() {
+    stage_ = HatchStage::row;
+    --rows_left_;
+    ++row_;
+    if (!one_way_) forward_ = !forward_;
+}
+
+bool ChunkDecoder::hatch_point(Point& point) {
+    const std::uint64_t j = forward_ ? 2 * intervals_ - ends_left_ : ends_left_ - 1;
+    const std::int64_t off = cursor_.signed_varint();
+    // Predictions are at most three times the limit away.
+    const std::int64_t along = beyond(off, 8 * hatch_limit) ? off : predictor_.predict(j) + off;
+    if (beyond(along, hatch_limit)) return fail("a hatch line is out of range");
+    predictor_.note(j, along);
+    --ends_left_;
+    point = {grid_.x(along, row_offset_), grid_.y(along, row_offset_), at_.z};
+    return in_range(point);
+}
+
+bool ChunkDecoder::decode_hatch_step(Operation& out) {
+    if (stage_ == HatchStage::row && (!begin_hatch_row() || stage_ == HatchStage::row))
+        return false;
+    const Point from = at_;
+    Point to;
+    if (!hatch_point(to)) return false;
+    at_ = to;
+    if (stage_ == HatchStage::start) {
+        stage_ = HatchStage::end;
+        if (from == to) return false;
+        if (linked_)
+            out = Line{from, to, true};
+        else
+            out = Travel{from, to, true};
+        linked_ = false;
+        return true;
+    }
+    stage_ = HatchStage::start;
+    if (ends_left_ == 0) end_hatch_row();
+    if (from == to) return false;
+    out = Line{from, to, true};
+    return true;
+}
+
+Point ChunkDecoder::step(bool with_z) {
+    // Wide enough steps are refused by in_range(); the sum must only not overflow.
+    const auto add = [](std::int64_t from, std::int64_t step) {
+        return beyond(step, 2 * coordinate_limit) ? 2 * coordinate_limit : from + step;
+    };
+    Point to = at_;
+    to.x = add(at_.x, cursor_.signed_varint());
+    to.y = add(at_.y, cursor_.signed_varint());
+    if (with_z) to.z = add(at_.z, cursor_.signed_varint());
+    return to;
+}
+
+bool ChunkDecoder::in_range(const Point& point) {
+    if (!beyond(point.x, coordinate_limit) && !beyond(point.y, coordinate_limit) &&
+        !beyond(point.z, coordinate_limit))
+        return true;
+    return fail("a position is out of range");
+}
+
+std::uint32_t ChunkDecoder::number() {
+    const std::uint64_t value = cursor_.varint();
+    if (value > largest_setting) fail("a number is out of range");
+    return static_cast<std::uint32_t>(value);
+}
+
+double ChunkDecoder::setting(double per_unit) {
+    return number() / per_unit;
+}
+
+}  // namespace lyr::format

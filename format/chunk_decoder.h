@@ -1,0 +1,87 @@
+// The operations of a layer's chunks, one at a time, from bytes whose CRC was found right.
+//
+// Contract
+//  1. Whatever the bytes are, next() ends after finitely many calls, reads nothing outside them and
+//     gives positions within coordinate_limit only.
+//  2. The byte ranges of the operations given out follow each other without a gap; what is passed
+//     over counts to the next one.
+//  3. Motions of no length are passed over.
+
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "format/bytes.h"
+#include "format/grid.h"
+#include "format/operation.h"
+#include "format/row_predictor.h"
+
+namespace lyr::format {
+
+class ChunkDecoder {
+public:
+    enum class Step { operation, end, error };
+
+    void begin_layer(const Point& start, Quantum quantum);
+    // `operations` is how many the chunk says it has.
+    void begin_chunk(std::span<const std::byte> bytes, std::uint64_t operations);
+
+    Step next(Operation& out);
+
+    const PathStyle& style() const { return style_; }
+    // What is wrong, after Step::error.
+    const char* error() const { return error_; }
+    // The byte range of the operation given out last, within the chunk's operations.
+    std::size_t begin_offset() const { return begin_offset_; }
+    std::size_t end_offset() const { return cursor_.offset(); }
+
+private:
+    enum class HatchStage { none, row, start, end };
+
+    bool fail(const char* error);
+    // These return false if they gave nothing out: passed over, or an error.
+    bool decode(std::uint8_t code, Operation& out);
+    bool decode_motion(std::uint8_t code, Operation& out);
+    bool decode_style(std::uint8_t code, Operation& out);
+    bool decode_machine(std::uint8_t code, Operation& out);
+    bool decode_run(Operation& out);
+    bool decode_line(bool with_z, Operation& out);
+    bool decode_arc(bool with_z, Operation& out);
+    bool decode_travel(bool with_z, Operation& out);
+    bool decode_circle(bool counter_clockwise, bool with_z, Operation& out);
+    bool decode_grid();
+    bool decode_path(Operation& out);
+    bool decode_hatch(Operation& out);
+    bool decode_hatch_step(Operation& out);
+    bool begin_hatch_row();
+    void end_hatch_row();
+    bool hatch_point(Point& point);
+
+    Point step(bool with_z);
+    bool in_range(const Point& point);
+    std::uint32_t number();
+    double setting(double per_unit);
+
+    Quantum quantum_;
+    Cursor cursor_;
+    std::size_t begin_offset_ = 0;
+    std::uint64_t stated_operations_ = 0, operations_ = 0;
+    const char* error_ = nullptr;
+
+    Point at_;
+    PathStyle style_;
+    bool has_path_ = false;
+
+    std::uint8_t run_code_ = 0, run_left_ = 0;
+
+    Grid grid_;
+    bool has_grid_ = false;
+    RowPredictor predictor_;
+    HatchStage stage_ = HatchStage::none;
+    bool one_way_ = false, forward_ = true, linked_ = false;
+    std::int64_t row_ = 0, row_offset_ = 0;
+    std::uint64_t rows_left_ = 0, intervals_ = 0, ends_left_ = 0;
+};
+
+}  // namespace lyr::format

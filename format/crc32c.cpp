@@ -1,0 +1,54 @@
+// Eight bytes a step by eight tables (Kounavis and Berry, "A systematic approach to building high
+// performance software-based CRC generators"): table k holds what a byte contributes after k
+// more bytes, and contributions add up by exclusive or.
+
+#include "format/crc32c.h"
+
+#include <array>
+
+#include "format/bytes.h"
+
+namespace lyr::format {
+namespace {
+
+constexpr std::uint32_t polynomial = 0x82f63b78u;
+
+using Table = std::array<std::uint32_t, 256>;
+
+constexpr std::array<Table, 8> make_tables() {
+    std::array<Table, 8> tables{};
+    for (std::uint32_t byte = 0; byte < 256; ++byte) {
+        std::uint32_t crc = byte;
+        for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ ((crc & 1) ? polynomial : 0);
+        tables[0][byte] = crc;
+    }
+    for (std::size_t k = 1; k < tables.size(); ++k) {
+        for (std::size_t byte = 0; byte < 256; ++byte) {
+            const std::uint32_t crc = tables[k - 1][byte];
+            tables[k][byte] = (crc >> 8) ^ tables[0][crc & 0xff];
+        }
+    }
+    return tables;
+}
+
+constexpr std::array<Table, 8> tables = make_tables();
+
+}  // namespace
+
+std::uint32_t crc32c(std::span<const std::byte> bytes, std::uint32_t before) {
+    std::uint32_t crc = ~before;
+    const std::byte* at = bytes.data();
+    std::size_t left = bytes.size();
+    for (; left >= 8; left -= 8, at += 8) {
+        const std::uint32_t low = get_u32(at) ^ crc, high = get_u32(at + 4);
+        crc = tables[7][low & 0xff] ^ tables[6][(low >> 8) & 0xff] ^ tables[5][(low >> 16) & 0xff] ^
+              tables[4][low >> 24] ^ tables[3][high & 0xff] ^ tables[2][(high >> 8) & 0xff] ^
+              tables[1][(high >> 16) & 0xff] ^ tables[0][high >> 24];
+    }
+    for (; left > 0; --left, ++at) {
+        crc = (crc >> 8) ^ tables[0][(crc ^ static_cast<std::uint32_t>(*at)) & 0xff];
+    }
+    return ~crc;
+}
+
+}  // namespace lyr::format
