@@ -69,6 +69,14 @@ LoopNodes nodes_of(const Model& model, const Loop& loop) {
 
 using FaceNodes = std::vector<LoopNodes>;
 
+FaceNodes nodes_of(const Model& model, const Face& face) {
+    FaceNodes nodes;
+    for (std::uint32_t l = face.first_loop; l < face.first_loop + face.loop_count; ++l) {
+        nodes.push_back(nodes_of(model, model.loops[l]));
+    }
+    return nodes;
+}
+
 // The integral of the outward normal: half of p x dp around the loops.
 Vector3 vector_area(const FaceNodes& face, const Point3& c) {
     Vector3 sum = Vector3::Zero();
@@ -98,7 +106,15 @@ struct AroundAxis {
     }
 };
 
-double cylinder_area(const Cylinder& cylinder, const FaceNodes& face) {
+double handedness(const Frame& frame) {
+    return frame.x.cross(frame.y).dot(frame.z) < 0 ? -1 : 1;
+}
+
+double plane_area(const Plane& plane, const FaceNodes& face, double sense) {
+    return sense * plane.frame.z.dot(vector_area(face, plane.frame.origin));
+}
+
+double cylinder_area(const Cylinder& cylinder, const FaceNodes& face, double sense) {
     double sum = 0;
     for (const LoopNodes& loop : face) {
         for (const Node& node : loop) {
@@ -106,11 +122,19 @@ double cylinder_area(const Cylinder& cylinder, const FaceNodes& face) {
             sum += at.z * at.angle_step();
         }
     }
-    return std::abs(cylinder.radius_mm * sum);
+    return -sense * handedness(cylinder.frame) * cylinder.radius_mm * sum;
 }
 
-double handedness(const Frame& frame) {
-    return frame.x.cross(frame.y).dot(frame.z) < 0 ? -1 : 1;
+// From the apex to the loops: radius^2 / (2 sin) for each radian around the axis.
+double cone_area(const Cone& cone, const FaceNodes& face, double sense) {
+    double sum = 0;
+    for (const LoopNodes& loop : face) {
+        for (const Node& node : loop) {
+            const AroundAxis at(cone.frame, node);
+            sum += at.x * at.step_y - at.y * at.step_x;
+        }
+    }
+    return -sense * handedness(cone.frame) * sum / (2 * std::sin(cone.half_angle_rad));
 }
 
 // How many times `whole` has to be added to bring `value` into (0, whole]. A boundary that cancels bounds the whole.
@@ -257,12 +281,14 @@ TorusIntegrals lemon_integrals(const Torus& torus, const FaceNodes& face, double
             sense * handedness(torus.frame) * sum.cosine + turns * whole.cosine};
 }
 
+TorusIntegrals tube_integrals(const Torus& torus, const FaceNodes& face, double sense) {
+    return on_lemon(torus, face) ? lemon_integrals(torus, face, sense)
+                                 : torus_integrals(torus, face, sense);
+}
+
 // Three times the face's part of the volume.
 double flux(const Model& model, const Face& face, const Point3& c) {
-    FaceNodes nodes;
-    for (std::uint32_t l = face.first_loop; l < face.first_loop + face.loop_count; ++l) {
-        nodes.push_back(nodes_of(model, model.loops[l]));
-    }
+    const FaceNodes nodes = nodes_of(model, face);
     const double sense = face.same_sense ? 1 : -1;
     const Vector3 outward = vector_area(nodes, c);
     struct Visitor {
@@ -273,7 +299,7 @@ double flux(const Model& model, const Face& face, const Point3& c) {
         double operator()(const Plane& s) const { return (s.frame.origin - c).dot(outward); }
         double operator()(const Cylinder& s) const {
             return (s.frame.origin - c).dot(outward) +
-                   sense * s.radius_mm * cylinder_area(s, nodes);
+                   sense * s.radius_mm * std::abs(cylinder_area(s, nodes, sense));
         }
         double operator()(const Cone& s) const {
             const Point3 apex =
@@ -285,8 +311,7 @@ double flux(const Model& model, const Face& face, const Point3& c) {
                    sense * s.radius_mm * sphere_area(s, nodes, sense);
         }
         double operator()(const Torus& s) const {
-            const TorusIntegrals integrals = on_lemon(s, nodes) ? lemon_integrals(s, nodes, sense)
-                                                                : torus_integrals(s, nodes, sense);
+            const TorusIntegrals integrals = tube_integrals(s, nodes, sense);
             return (s.frame.origin - c).dot(outward) +
                    sense * (s.minor_mm * integrals.area + s.major_mm * integrals.cosine);
         }
@@ -317,6 +342,20 @@ double signed_volume_mm3(const Model& model, ShellId id) {
         sum += flux(model, model.faces[f], c);
     }
     return sum / 3;
+}
+
+double signed_area_mm2(const Model& model, FaceId id) {
+    const Face& face = model[id];
+    struct Visitor {
+        FaceNodes nodes;
+        double sense;
+        double operator()(const Plane& s) const { return plane_area(s, nodes, sense); }
+        double operator()(const Cylinder& s) const { return cylinder_area(s, nodes, sense); }
+        double operator()(const Cone& s) const { return cone_area(s, nodes, sense); }
+        double operator()(const Sphere& s) const { return sphere_area(s, nodes, sense); }
+        double operator()(const Torus& s) const { return tube_integrals(s, nodes, sense).area; }
+    };
+    return std::visit(Visitor{nodes_of(model, face), face.same_sense ? 1.0 : -1.0}, face.surface);
 }
 
 void reverse_shell(Model& model, ShellId id) {

@@ -9,7 +9,10 @@
 //     the volume of the shell and of the balls and rings whose surfaces it uses.
 //  2. It does not change, beyond round-off, when the model is moved; a mirroring keeps it too.
 //  3. Of a shell that does not close it says nothing.
-//  4. reverse_shell() turns a shell's faces around, loops included: the volume changes its sign.
+//  4. signed_area_mm2(m, f) is the face's area, negative where its loops run clockwise about its outward normal, that
+//     is, where same_sense and loops contradict each other. On spheres and tori there is no telling, for the
+//     boundary of a region is that of the rest as well: there it is positive.
+//  5. reverse_shell() turns a shell's faces around, loops included: the volume changes its sign.
 
 #pragma once
 
@@ -21,6 +24,8 @@ namespace lyr {
 inline constexpr double volume_accuracy = 1e-9;
 
 double signed_volume_mm3(const Model& model, ShellId shell);
+
+double signed_area_mm2(const Model& model, FaceId face);
 
 void reverse_shell(Model& model, ShellId shell);
 

@@ -9,6 +9,7 @@
 
 #include "kernel/brep/edge_builder.h"
 #include "kernel/brep/volume.h"
+#include "kernel/geometry/tolerance.h"
 #include "parser/import/curves.h"
 #include "parser/import/placement.h"
 #include "parser/import/shells.h"
@@ -45,21 +46,22 @@ public:
         return Done{};
     }
 
-    // Turns a shell around that looks into its material. Files do not agree on which way a void's shell looks
-    // before its orientation flag is applied, and a surface model does not say.
+    // What closes has an inside, and that decides where faces look. Files do not agree on it: some give same_sense
+    // against the loops, some turn a void's shell before its orientation flag is applied and some after, and a
+    // surface model does not say.
     void orient_last_shell(const ShellRecord& record, bool is_void, bool is_stated) {
-        const ShellId shell(model_.shells.size() - 1);
-        // What is open or flat has no side of its own.
         if (open_edge_count(record) > 0) return;
+        const ShellId shell(model_.shells.size() - 1);
+        if (const std::size_t faces = follow_loops(model_[shell]); faces > 0) {
+            add_note(
+                record.shell,
+                std::to_string(faces) +
+                    " faces have a same_sense that contradicts their loops; the loops are taken");
+        }
         const double volume_mm3 = signed_volume_mm3(model_, shell);
         if (is_void ? volume_mm3 <= 0 : volume_mm3 >= 0) return;
         reverse_shell(model_, shell);
-        if (!is_stated) return;
-        Diagnostic note =
-            file_.error(record.shell, named(file_, record.shell) +
-                                          " is stated inside out; it has been turned around");
-        note.severity = Severity::note;
-        diagnostics_.push_back(std::move(note));
+        if (is_stated) add_note(record.shell, "it is stated inside out and has been turned around");
     }
 
     Model take() { return std::move(model_); }
@@ -69,6 +71,27 @@ private:
     static std::uint32_t index(const std::vector<T>& table) {
         return static_cast<std::uint32_t>(table.size());
     }
+
+    void add_note(InstanceIndex instance, const std::string& message) {
+        Diagnostic note = file_.error(instance, named(file_, instance) + ": " + message);
+        note.severity = Severity::note;
+        diagnostics_.push_back(std::move(note));
+    }
+
+    // In a closed shell, loops agree with those next to them; same_sense is one face's word alone. The number of
+    // faces that have been turned.
+    std::size_t follow_loops(const Shell& shell) {
+        std::size_t turned = 0;
+        for (std::uint32_t f = shell.first_face; f < shell.first_face + shell.face_count; ++f) {
+            if (!(signed_area_mm2(model_, FaceId(std::size_t{f})) < -certain_area_mm2)) continue;
+            model_.faces[f].same_sense = !model_.faces[f].same_sense;
+            ++turned;
+        }
+        return turned;
+    }
+
+    // The sign of a sliver's area is that of its edges' round-off: resolution_mm over a length of ten metres.
+    static constexpr double certain_area_mm2 = resolution_mm * 1e4;
 
     Status add_face(const ShellRecord& record, const FaceRecord& face, ShellId shell) {
         Result<Surface> surface = read_surface(file_, face.face, face.surface, units_);

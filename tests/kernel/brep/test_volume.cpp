@@ -99,7 +99,7 @@ Shape turned(const Surface& lateral, double low, double low_radius, double high,
 
 }  // namespace
 
-TEST_CASE("1, 2, 4: cylinders and cones") {
+TEST_CASE("1, 2, 5: cylinders and cones") {
     check_volume(turned(Cylinder{at_height(3), 2}, 1, 2, 8, 2), pi * 4 * 7);
     check_volume(turned(Cone{at_height(0), 1, std::atan(0.5)}, 1, 1.5, 3, 2.5),
                  pi * 2 / 3 * (1.5 * 1.5 + 1.5 * 2.5 + 2.5 * 2.5));
@@ -119,7 +119,7 @@ TEST_CASE("1, 2, 4: cylinders and cones") {
     check_volume(with_seam, pi * 4 * 4 / 3);
 }
 
-TEST_CASE("1, 2, 4: spheres, whole and in parts") {
+TEST_CASE("1, 2, 5: spheres, whole and in parts") {
     const double r = 3, whole = 4.0 / 3 * pi * r * r * r;
     const Sphere sphere{{{1, 2, 3}, x_axis, y_axis, z_axis}, r};
     Shape bare;
@@ -152,7 +152,7 @@ TEST_CASE("1, 2, 4: spheres, whole and in parts") {
     check_volume(bubble, -whole);
 }
 
-TEST_CASE("1, 2, 4: tori, whole and in parts") {
+TEST_CASE("1, 2, 5: tori, whole and in parts") {
     const double major = 5, minor = 2, tube = pi * minor * minor;
     const Torus torus{at_height(0), major, minor};
     Shape bare;
@@ -190,7 +190,7 @@ TEST_CASE("1, 2, 4: tori, whole and in parts") {
     }
 }
 
-TEST_CASE("1, 2, 4: where the tube crosses the axis, the lemon inside") {
+TEST_CASE("1, 2, 5: where the tube crosses the axis, the lemon inside") {
     const Torus torus{at_height(0), 2, 5};
     const double tip = std::sqrt(25.0 - 4);
     for (const double z : {-4.0, -1.0, 0.0, 3.0}) {
@@ -225,4 +225,35 @@ TEST_CASE("1, 2, 4: where the tube crosses the axis, the lemon inside") {
                    {{{axis, false}, {second, true}}});
         check_volume(wedge, angle / 2 * (primitive(tip) - primitive(-tip)));
     }
+}
+
+TEST_CASE("4: areas, negative where sense and loops contradict each other") {
+    const double slant = std::sqrt(1 + 0.25);
+    const Shape shapes[] = {turned(Cylinder{at_height(3), 2}, 1, 2, 8, 2),
+                            turned(Cone{at_height(0), 1, std::atan(0.5)}, 1, 1.5, 3, 2.5)};
+    const double areas[][3] = {{2 * pi * 2 * 7, pi * 4, pi * 4},
+                               {pi * (1.5 + 2.5) * 2 * slant, pi * 2.25, pi * 6.25}};
+    Random random(32);
+    for (std::size_t i = 0; i < 2; ++i) {
+        for (int k = 0; k < 10; ++k) {
+            Model model = transformed(shapes[i].model, random.similarity(false));
+            for (std::size_t f = 0; f < 3; ++f) {
+                CHECK(signed_area_mm2(model, FaceId(f)) ==
+                      doctest::Approx(areas[i][f]).epsilon(1e-9));
+                model.faces[f].same_sense = !model.faces[f].same_sense;
+                CHECK(signed_area_mm2(model, FaceId(f)) ==
+                      doctest::Approx(-areas[i][f]).epsilon(1e-9));
+            }
+        }
+    }
+    const Frame section{{5, 0, 0}, x_axis, z_axis, -y_axis};
+    Shape elbow;
+    const Vector3 out(0, 1, 0);
+    const auto start = elbow.ring(section, 2), end = elbow.ring({5 * out, out, z_axis, x_axis}, 2);
+    elbow.face(Torus{at_height(0), 5, 2}, true, {{{start, true}}, {{end, false}}});
+    CHECK(signed_area_mm2(elbow.model, FaceId(0)) ==
+          doctest::Approx(pi / 2 * 5 * 2 * pi * 2).epsilon(1e-9));
+    Shape ball;
+    ball.face(Sphere{at_height(0), 3}, true, {});
+    CHECK(signed_area_mm2(ball.model, FaceId(0)) == doctest::Approx(4 * pi * 9));
 }

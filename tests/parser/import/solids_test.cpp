@@ -27,7 +27,8 @@ TEST_CASE("1, 3: a box, whatever way the flags state it") {
     for (int bits = 0; bits < 16; ++bits) {
         CAPTURE(bits);
         StepText step;
-        const ShapeFlags flags{(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, (bits & 8) != 0};
+        const ShapeFlags flags{(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, (bits & 8) != 0,
+                               false};
         step.representation({step.box({1, 2, 3}, {4, 6, 8}, flags)}, step.millimetres());
         const Imported result = imported(step);
         CHECK(result.diagnostics.empty());
@@ -90,6 +91,18 @@ TEST_CASE("1: voids look into the void, however their shell is stated") {
             CHECK(mentions(diagnostic, "ORIENTED_CLOSED_SHELL #"));
         }
     }
+}
+
+TEST_CASE("1: where same_sense contradicts the loops of a closed shell, the loops count") {
+    StepText step;
+    ShapeFlags flags;
+    flags.senses_contradict = true;
+    step.representation({step.box({1, 2, 3}, {4, 6, 8}, flags)}, step.millimetres());
+    const Imported result = imported(step);
+    check_box(result.model, {1, 2, 3}, {4, 6, 8});
+    REQUIRE(result.diagnostics.size() == 1);
+    CHECK(result.diagnostics[0].severity == Severity::note);
+    CHECK(mentions(result.diagnostics[0], "6 faces"));
 }
 
 TEST_CASE("1: a solid that is stated inside out is turned around") {

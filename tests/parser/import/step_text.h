@@ -14,10 +14,11 @@ namespace lyr::test {
 
 // How a shape states what it states: each flag has a counterpart that undoes it.
 struct ShapeFlags {
-    bool surfaces_inward = false;  // the planes' normals point inward, same_sense is .F.
-    bool bounds_reversed = false;  // loops run clockwise, the bound's orientation is .F.
-    bool edges_against = false;    // curves run against their edges, same_sense is .F.
-    bool faces_oriented = false;   // each face turned inside out, and back by an ORIENTED_FACE
+    bool surfaces_inward = false;    // the planes' normals point inward, same_sense is .F.
+    bool bounds_reversed = false;    // loops run clockwise, the bound's orientation is .F.
+    bool edges_against = false;      // curves run against their edges, same_sense is .F.
+    bool faces_oriented = false;     // each face turned inside out, and back by an ORIENTED_FACE
+    bool senses_contradict = false;  // same_sense is wrong, and nothing makes up for it
 };
 
 class StepText {
@@ -183,8 +184,9 @@ public:
             const Vector3 x = normals[s].unitOrthogonal();
             const int plane =
                 add("PLANE(''," + ref(placement(corners[sides[s][0]], side * normals[s], x)) + ")");
-            int f = face({bound(loop(uses), !flags.bounds_reversed)}, plane,
-                         !flags.surfaces_inward != flags.faces_oriented);
+            int f =
+                face({bound(loop(uses), !flags.bounds_reversed)}, plane,
+                     (!flags.surfaces_inward != flags.faces_oriented) != flags.senses_contradict);
             if (flags.faces_oriented) f = add("ORIENTED_FACE('',*," + ref(f) + ",.F.)");
             faces.push_back(f);
         }
