@@ -79,10 +79,7 @@ bool BlockReader::seek(std::uint64_t offset) {
 
 std::optional<std::uint64_t> BlockReader::size() {
     const off_t end = ::lseek(descriptor_, 0, SEEK_END);
-    if (end < 0) {
-        fail(BlockFault::not_seekable);
-        return std::nullopt;
-    }
+    if (end < 0) return std::nullopt;
     return static_cast<std::uint64_t>(end);
 }
 

@@ -60,6 +60,7 @@ public:
     bool at_end();
 
     bool seek(std::uint64_t offset);
+    // None: a pipe.
     std::optional<std::uint64_t> size();
 
 private:

@@ -1,97 +1,18 @@
 // A loop over blocks around the decoder of chunks. Every check has its message here; the parts below
 // only say that something is wrong.
 
-#include "format/reader.h"
-
-#include <fcntl.h>
-#include <unistd.h>
-
-#include <cerrno>
+#include <array>
 #include <cstring>
 #include <string_view>
 
-#include "format/block_reader.h"
-#include "format/chunk_decoder.h"
-#include "format/layer_record.h"
-#include "format/metadata_text.h"
+#include "format/reader_state.h"
 
 namespace lyr::format {
-namespace {
 
 std::string type_name(std::uint8_t type) {
     constexpr std::string_view digits = "0123456789abcdef";
     return std::string("0x") + digits[type >> 4] + digits[type & 15];
 }
-
-bool is(const BlockHead& head, BlockType type) {
-    return head.type == static_cast<std::uint8_t>(type);
-}
-
-std::string_view text_of(std::span<const std::byte> bytes) {
-    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
-}  // namespace
-
-class Reader::Implementation {
-public:
-    Implementation(int descriptor, std::string name, ReadOptions options)
-        : blocks_(descriptor), name_(std::move(name)), options_(options) {}
-
-    bool open();
-    // None: the end, or an error.
-    bool next(Operation& operation);
-    bool seek_layer(std::uint32_t index);
-
-    const std::optional<Diagnostic>& error() const { return error_; }
-    const FileHeader& header() const { return header_; }
-    const Layer& layer() const { return record_.layer; }
-    const PathStyle& path() const { return decoder_.style(); }
-    ReadPosition position() const;
-
-private:
-    enum class Where { before_layers, in_layer, in_chunk, behind_layers, at_end };
-
-    bool fail(const std::string& what, std::uint64_t offset, ExitStatus status = ExitStatus::input);
-    bool fail_block(const BlockHead& head);
-    bool fail_fault(std::uint64_t offset);
-    std::string place(std::uint64_t offset) const;
-
-    bool read_prologue();
-    bool read_metadata();
-    bool read_thumbnail(const BlockHead& head);
-    bool read_configuration(const BlockHead& head);
-    bool read_extra(const BlockHead& head);
-    bool read_block();
-    bool read_layer(const BlockHead& head);
-    bool read_chunk(const BlockHead& head);
-    bool read_index(const BlockHead& head);
-    bool read_end(const BlockHead& head);
-    bool pass_over(const BlockHead& head);
-    bool layer_is_whole(const BlockHead& head);
-    std::optional<std::span<const std::byte>> payload(const BlockHead& head);
-    std::optional<std::uint64_t> find_layer(std::uint32_t index);
-    bool find_index(BlockHead& head, std::uint32_t& layers);
-
-    BlockReader blocks_;
-    std::string name_;
-    ReadOptions options_;
-    FileHeader header_;
-    std::optional<Diagnostic> error_;
-
-    Where where_ = Where::before_layers;
-    bool layer_begins_ = false;  // LayerStart is to be given out
-    bool sought_ = false;        // counts and index are not known from the start
-    LayerRecord record_;
-    BlockHead layer_head_;
-    ChunkDecoder decoder_;
-    std::uint64_t decoder_offset_ = 0;             // of its first byte in the file
-    std::uint32_t layers_ = 0, whole_layers_ = 0;  // begun, and read to their end
-    std::uint32_t layer_chunks_ = 0;
-    std::uint64_t layer_operations_ = 0, chunks_ = 0, operations_ = 0;
-    std::uint32_t offsets_crc_ = 0;  // over the layers' offsets as the index has them
-    std::uint64_t index_offset_ = 0;
-};
 
 bool Reader::Implementation::fail(const std::string& what, std::uint64_t offset,
                                   ExitStatus status) {
@@ -126,7 +47,7 @@ bool Reader::Implementation::fail_fault(std::uint64_t offset) {
         case BlockFault::damaged:
             return fail("the block is damaged (its CRC is wrong)", offset);
         case BlockFault::not_seekable:
-            return fail("cannot go to a layer in a pipe; give a file", offset);
+            return fail("cannot go to the place that the index or the end block names", offset);
         default:
             return fail("the file is cut short: it ends", blocks_.end_of_file());
     }
@@ -147,82 +68,6 @@ std::optional<std::span<const std::byte>> Reader::Implementation::payload(const 
     auto bytes = blocks_.payload(head);
     if (!bytes) fail_block(head);
     return bytes;
-}
-
-bool Reader::Implementation::open() {
-    if (!read_prologue() || !read_metadata()) return false;
-    for (;;) {
-        const std::optional<BlockHead> head = blocks_.head();
-        if (!head) return fail_fault(blocks_.offset());
-        if (is(*head, BlockType::layer) || is(*head, BlockType::index)) return true;
-        if (!read_extra(*head)) return false;
-    }
-}
-
-bool Reader::Implementation::read_prologue() {
-    const std::span<const std::byte> bytes = blocks_.raw(prologue_bytes);
-    if (blocks_.fault() == BlockFault::unreadable) return fail_fault(0);
-    if (bytes.empty()) return fail("the file is empty", 0);
-    const std::size_t compared = std::min(bytes.size(), magic.size());
-    if (std::memcmp(bytes.data(), magic.data(), compared) != 0)
-        return fail("this is not a .lyr file: it does not begin with LYR and the byte 1a", 0);
-    if (bytes.size() < prologue_bytes) return fail_fault(0);
-    if (crc32c(bytes.first(prologue_bytes - 4)) != get_u32(bytes.data() + prologue_bytes - 4))
-        return fail("the prologue is damaged (its CRC is wrong)", 0);
-    const std::uint32_t version = get_u32(bytes.data() + 4);
-    header_.major = version & 0xffff;
-    header_.minor = version >> 16;
-    header_.quantum.nm = get_u32(bytes.data() + 8);
-    if (header_.major != major_version)
-        return fail("the file has format version " + std::to_string(header_.major) + '.' +
-                        std::to_string(header_.minor) + "; this program reads version " +
-                        std::to_string(major_version),
-                    4, ExitStatus::unsupported);
-    if (header_.quantum.nm == 0 || header_.quantum.nm > coarsest_quantum_nm)
-        return fail("the quantum must be 1 to " + std::to_string(coarsest_quantum_nm) + " nm", 8);
-    return true;
-}
-
-bool Reader::Implementation::read_metadata() {
-    const std::optional<BlockHead> head = blocks_.head();
-    if (!head) return fail_fault(blocks_.offset());
-    if (!is(*head, BlockType::metadata))
-        return fail("the first block has type " + type_name(head->type) + ", expected metadata",
-                    head->offset);
-    const auto bytes = payload(*head);
-    if (!bytes) return false;
-    ParsedMetadata parsed = parse_metadata(text_of(*bytes));
-    if (parsed.error) return fail(*parsed.error, head->offset);
-    header_.metadata = std::move(parsed.metadata);
-    header_.summary = parsed.summary;
-    return true;
-}
-
-bool Reader::Implementation::read_extra(const BlockHead& head) {
-    if (is(head, BlockType::thumbnail) && options_.keep_thumbnails) return read_thumbnail(head);
-    if (is(head, BlockType::configuration) && options_.keep_configuration)
-        return read_configuration(head);
-    return pass_over(head);
-}
-
-bool Reader::Implementation::read_thumbnail(const BlockHead& head) {
-    Bytes bytes;
-    const auto keep = [&](std::span<const std::byte> piece) {
-        bytes.insert(bytes.end(), piece.begin(), piece.end());
-    };
-    if (!blocks_.stream(head, keep)) return fail_block(head);
-    if (bytes.size() < 8) return fail("a thumbnail has no size", head.offset);
-    header_.metadata.thumbnails.push_back(
-        {get_u32(bytes.data()), get_u32(bytes.data() + 4), {bytes.begin() + 8, bytes.end()}});
-    return true;
-}
-
-bool Reader::Implementation::read_configuration(const BlockHead& head) {
-    std::string text;
-    if (!blocks_.stream(head, [&](std::span<const std::byte> piece) { text += text_of(piece); }))
-        return fail_block(head);
-    header_.metadata.configuration = std::move(text);
-    return true;
 }
 
 // The CRC comes first: a damaged type is no unknown type.
@@ -384,94 +229,11 @@ ReadPosition Reader::Implementation::position() const {
     return position;
 }
 
-bool Reader::Implementation::find_index(BlockHead& head, std::uint32_t& layers) {
-    constexpr std::size_t end_bytes = block_frame_bytes + end_payload_bytes;
-    const std::optional<std::uint64_t> size = blocks_.size();
-    if (!size) return fail_fault(blocks_.offset());
-    if (*size < end_bytes || !blocks_.seek(*size - end_bytes))
-        return fail("the file has no end block", *size);
-    const std::optional<BlockHead> end = blocks_.head();
-    if (!end) return fail_fault(blocks_.offset());
-    if (!is(*end, BlockType::end) || end->length != end_payload_bytes)
-        return fail("the file has no end block", end->offset);
-    const auto bytes = payload(*end);
-    if (!bytes) return false;
-    layers = get_u32(bytes->data());
-    if (!blocks_.seek(get_u64(bytes->data() + 28))) return fail_fault(blocks_.offset());
-    const std::optional<BlockHead> index = blocks_.head();
-    if (!index) return fail_fault(blocks_.offset());
-    if (!is(*index, BlockType::index) || index->length != layers * index_entry_bytes)
-        return fail("the file has no index", index->offset);
-    head = *index;
-    return true;
-}
-
-std::optional<std::uint64_t> Reader::Implementation::find_layer(std::uint32_t index) {
-    BlockHead head;
-    std::uint32_t layers = 0;
-    if (!find_index(head, layers)) return std::nullopt;
-    // Whether the layer exists shows before the index is read, what it says only after.
-    std::uint64_t offset = 0, passed = 0;
-    const std::uint64_t first = index * std::uint64_t{index_entry_bytes};
-    const auto pick = [&](std::span<const std::byte> piece) {
-        for (std::uint64_t i = first; i < first + index_entry_bytes; ++i)
-            if (i >= passed && i < passed + piece.size())
-                offset |= static_cast<std::uint64_t>(piece[i - passed]) << (8 * (i - first));
-        passed += piece.size();
-    };
-    if (!blocks_.stream(head, pick)) {
-        fail_block(head);
-        return std::nullopt;
-    }
-    if (index >= layers) {
-        fail("there is no layer " + std::to_string(std::uint64_t{index} + 1) + "; the file has " +
-                 std::to_string(layers),
-             head.offset);
-        return std::nullopt;
-    }
-    return offset;
-}
-
-bool Reader::Implementation::seek_layer(std::uint32_t index) {
-    error_.reset();
-    where_ = Where::before_layers;
-    layer_begins_ = false;
-    sought_ = true;
-    layers_ = index;
-    whole_layers_ = 0;
-    const std::optional<std::uint64_t> offset = find_layer(index);
-    if (!offset) return false;
-    if (!blocks_.seek(*offset)) return fail_fault(*offset);
-    const std::optional<BlockHead> head = blocks_.head();
-    if (!head) return fail_fault(blocks_.offset());
-    if (!is(*head, BlockType::layer))
-        return fail("the index does not lead to a layer", head->offset);
-    return read_layer(*head);
-}
-
 Reader::Reader(std::unique_ptr<Implementation> implementation)
     : implementation_(std::move(implementation)) {}
 Reader::Reader(Reader&&) noexcept = default;
 Reader& Reader::operator=(Reader&&) noexcept = default;
 Reader::~Reader() = default;
-
-Result<Reader> Reader::open(const std::string& path, ReadOptions options) {
-    if (path == "-") return from_descriptor(::dup(STDIN_FILENO), "standard input", options);
-    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    if (descriptor < 0)
-        return Diagnostic{Severity::error,
-                          ExitStatus::input,
-                          std::string("cannot read: ") + std::strerror(errno),
-                          {.file = path}};
-    return from_descriptor(descriptor, path, options);
-}
-
-Result<Reader> Reader::from_descriptor(int descriptor, const std::string& name,
-                                       ReadOptions options) {
-    auto implementation = std::make_unique<Implementation>(descriptor, name, options);
-    if (!implementation->open()) return *implementation->error();
-    return Reader(std::move(implementation));
-}
 
 const FileHeader& Reader::header() const {
     return implementation_->header();

@@ -21,7 +21,7 @@
 //     unknown block that may not is an error (status unsupported), as is a newer major version.
 //  5. No input makes it crash, read out of bounds or loop. Errors carry layer and chunk (from 1, as
 //     people count) and byte offset in their message.
-//  6. Nothing is needed but read(2); lseek(2) only for seek_layer().
+//  6. Nothing is needed but read(2); lseek(2) only in seek_layer(), which does without in a pipe.
 
 #pragma once
 
@@ -82,9 +82,9 @@ public:
     const PathStyle& path() const;
     ReadPosition position() const;
 
-    // The next operation will be LayerStart of this layer (from 0). Needs a file that can be sought
-    // in and whose index is whole; the end is then checked without counts and index. Errors: input,
-    // and the reader is then at that error.
+    // The next operation will be LayerStart of this layer (from 0). In a file it goes there by the
+    // index, which must be whole; the end is then checked without counts and index. In a pipe it
+    // reads on to the layer, which must not have begun. Errors: input, and the reader stays at it.
     Status seek_layer(std::uint32_t index);
 
 private:
