@@ -95,6 +95,7 @@ bool Indexer::section(std::string_view name) {
 
 bool Indexer::header_section() {
     if (!take(';', "after HEADER")) return false;
+    has_header_ = true;
     while (true) {
         blank();
         const std::string_view name = word();
@@ -133,7 +134,8 @@ bool Indexer::header_entry() {
 // Goes on behind the first ";" that is followed by another entry or the end of the section. A string or
 // comment that is not closed cannot be passed: the whole file may be inside it.
 bool Indexer::recover_in_header() {
-    if (p_ == end_ || at('\'') || at_comment()) return false;
+    constexpr int most = 100;  // a header of which so much cannot be read is none
+    if (p_ == end_ || at('\'') || at_comment() || passed_over_++ == most) return false;
     const Diagnostic reason = *error_;
     const auto skip_space = [this](const char* p) {
         while (p < end_ && is_blank(*p)) ++p;
@@ -255,6 +257,7 @@ bool Indexer::finish(bool ended) {
     blank();
     const bool closed = ended && at(';');
     if (!closed) warn(ended ? p_ : end_, "END-ISO-10303-21; is missing at the end of the file");
+    if (!has_header_) warn(table_.begin(), "the file has no HEADER section");
     if (!has_data_) warn(p_, "the file has no DATA section");
     if (closed) ++p_;
     if (ended) check_rest();

@@ -69,7 +69,9 @@ private:
     const char* const end_;
     std::optional<std::uint64_t> id_;  // of the instance that is being read
     std::vector<Scope> scopes_;
+    bool has_header_ = false;
     bool has_data_ = false;
+    int passed_over_ = 0;  // entries of the header
     std::optional<Diagnostic> error_;
 };
 

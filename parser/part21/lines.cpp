@@ -1,4 +1,4 @@
-// Marks every 64 KiB, so that a question costs one block however large the file is.
+// Marks every 4 KiB, so that a question costs one block however large the file is.
 
 #include "parser/part21/lines.h"
 

@@ -23,7 +23,7 @@ private:
         std::uint32_t line;
         std::size_t line_start;
     };
-    static constexpr std::size_t block = 1 << 16;
+    static constexpr std::size_t block = 1 << 12;
 
     mutable std::once_flag once_;
     mutable std::vector<Mark> marks_;

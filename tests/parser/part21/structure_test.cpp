@@ -283,6 +283,8 @@ TEST_CASE("missing ends and starts of sections that lose nothing are warnings [4
     CHECK(
         only_warning(good_header.substr(0, good_header.size() - 8) + data + "END-ISO-10303-21;") ==
         "test.stp:6:1: warning: ENDSEC; is missing before DATA;");
+    CHECK(only_warning("ISO-10303-21;\n" + data + "END-ISO-10303-21;") ==
+          "test.stp:1:1: warning: the file has no HEADER section");
     CHECK(only_warning(step("#1=A();") + "rubbish") ==
           "test.stp:11:1: warning: what follows END-ISO-10303-21; is not read");
     CHECK(only_warning(step("#1=A();") + step("#2=A();")) ==
