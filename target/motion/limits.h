@@ -5,15 +5,17 @@
 //     whatever direction an arc points on its way: its tangential and its centripetal acceleration are
 //     added up as vectors.
 //  2. The acceleration that a move asks for bounds its tangential and its centripetal acceleration each.
-//  3. corner_speed_mm_s() is that of the junction deviation: the speed at which a circle that touches
-//     both tangents and passes the corner within the deviation would need the acceleration of the axes
-//     along the corner's bisector. Where the tangents agree there is no limit but the moves' own.
+//  3. corner_speed_mm_s() is the speed at which the axes, accelerating along the corner's bisector, go
+//     round a circle that touches both tangents and passes the corner within the junction deviation,
+//     or, if that is smaller, one that touches no further away than half of the shorter move (a curve
+//     given as many short lines). Where the tangents agree there is no limit but the moves' own.
 //  4. The extruder's speed does not jump by more than extruder_jump_mm_s at a corner. Between a move of
 //     the extruder alone and any other the machine stops.
 
 #pragma once
 
 #include <array>
+#include <cstdint>
 
 #include "base/diagnostic.h"
 #include "target/motion/path.h"
@@ -44,7 +46,7 @@ struct MoveLimits {
     double acceleration_mm_s2 = 0;  // along the path
 };
 
-// All limits are positive and finite (the junction deviation may be 0); otherwise what is not.
+// All limits are positive (the junction deviation may be 0) and at most 1e9; otherwise what is not.
 Status check(const Limits& limits);
 
 MoveLimits limits_of(const Move& move, const Limits& limits);

@@ -42,52 +42,63 @@ public:
     static constexpr std::size_t default_capacity = 1024;
     // Moves that follow each other meet within this: far below a microstep, far above rounding.
     static constexpr double join_mm = 1e-6;
+    // A coordinate within 100 m keeps its rounding far below a microstep, a duration within 11 days
+    // below a nanosecond.
+    static constexpr double farthest_mm = 1e5;
+    static constexpr double longest_s = 1e6;
+    // Below the rounding of any coordinate; a move shorter than this is none.
+    static constexpr double shortest_mm = 1e-12;
 
     // Error (status machine): limits that are not positive, or a capacity below 4.
     static Result<Planner> create(const Limits& limits, std::size_t capacity = default_capacity);
 
     // A full planner takes no more; pop() makes room.
     bool full() const { return size_ == ring_.size(); }
-    // Errors (status machine): not finite, a speed that is not positive, a start that is not the end of
-    // the move before, a full planner. A move of no length is taken and left out.
+    // Errors (status machine): not finite, too far or too long, a speed that is not positive, an arc
+    // that does not lead to its end, a start that is not the end of the move before, a full planner.
+    // A move shorter than shortest_mm is taken and left out.
     Status push(const Move& move);
-    // The machine rests for this time between the moves pushed so far and those that follow.
+    // The moves pushed so far end at rest, and those that follow begin so much later, at most
+    // longest_s; a time that is not positive is no wait, only a stop.
     void dwell(double time_s);
     // What was pushed so far ends at rest, and pop() gives all of it.
-    void flush() { flushing_ = size_ > 0; }
+    void flush();
 
     // The next planned move, if there is one whose speeds are settled. False: push more, or flush.
     bool pop(PlannedMove& planned);
 
-    // Where the last move that was popped ends, or a later dwell.
+    // Where the last move that was popped ends.
     std::int64_t time_ns() const { return time_ns_; }
 
 private:
     struct Entry {
         Move move;
-        double length_mm;
+        double length_mm = 0;
         MoveLimits limits;
-        double junction_mm2_s2;  // largest squared speed at its start
-        double start_mm2_s2;     // planned
-        double dwell_ns;         // before it
+        double junction_mm2_s2 = 0;  // largest squared speed at its start
+        double start_mm2_s2 = 0;     // planned
+        double dwell_ns = 0;         // before it
     };
 
     Planner(const Limits& limits, std::size_t capacity) : limits_(limits), ring_(capacity) {}
-    Entry& at(std::size_t index) { return ring_[(first_ + index) % ring_.size()]; }
-    Status check(const Move& move) const;
+    Entry& at(std::size_t index);
+    Status check(const Move& move, double length_mm) const;
+    double junction_mm2_s2(const Entry& next) const;
     void settle();
+    std::size_t limit_backwards();
+    void limit_forwards();
     void advance_ns(double time_ns);
 
     Limits limits_;
     std::vector<Entry> ring_;
     std::size_t first_ = 0, size_ = 0;
     std::size_t settled_ = 0;  // moves at the front that may go out
-    bool flushing_ = false;
-    bool any_ = false;  // a move was pushed ever
+    std::size_t flushed_ = 0;  // moves at the front that must
+    bool begun_ = false;       // `last_` and its limits are those of a move
     Move last_;
-    double dwell_ns_ = 0;  // before the next move
-    bool rests_ = true;    // before the next move
-    double next_start_mm2_s2_ = 0;  // of the move behind the settled ones
+    MoveLimits last_limits_;
+    bool rests_ = true;  // before the next move
+    double dwell_ns_ = 0;
     std::int64_t time_ns_ = 0;
     double time_part_ns_ = 0;
 };

@@ -9,7 +9,9 @@
 
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 namespace lyr::motion {
@@ -33,8 +35,15 @@ struct Profile {
     double speed_at(double time_s) const;
 };
 
-// Of a phase, at a distance not before its begin.
-double time_in_phase(const Phase& phase, double distance_mm);
+// When a phase gets to a distance: 2 s / (v + w) with v, w the speeds at both ends of the way, which
+// loses no digits for any acceleration, none included. Before its begin it is the phase's begin.
+inline double time_in_phase(const Phase& phase, double distance_mm) {
+    const double way_mm = distance_mm - phase.distance_mm;
+    if (!(way_mm > 0)) return phase.time_s;
+    const double v = phase.speed_mm_s;
+    const double w = std::sqrt(std::max(0.0, v * v + 2 * phase.acceleration_mm_s2 * way_mm));
+    return phase.time_s + 2 * way_mm / (v + w);
+}
 
 // The speeds at the ends must be reachable from each other over the length.
 Profile trapezoid(double length_mm, double start_speed_mm_s, double end_speed_mm_s,

@@ -3,11 +3,12 @@
 // of the motor's function of distance, then the inverse of the speed profile, both in closed form.
 //
 // Contract
-//  1. At every time each motor is within half a microstep (and touch_steps) of its ideal position.
+//  1. At every time each motor is within half a microstep (and MotorWalk::touch_steps) of its ideal position.
 //  2. A step comes within 1 us of the exact solution (in practice within 1 ns, the rounding of times).
 //  3. Positions are whole counts from the origin for the whole print: nothing drifts. The extruder's
 //     fraction of a step is carried from move to move.
-//  4. A position that touches a middle and turns back without passing it by touch_steps makes no step.
+//  4. A position that touches a middle and turns back without passing it by touch_steps makes no step;
+//     one that stops there and goes on makes it when it goes on.
 //  5. Events come in order of time. Motors that step in the same nanosecond of a move share an event;
 //     a motor is never twice in one event.
 //  6. The same moves give the same events. Nothing is allocated.
@@ -16,9 +17,11 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "target/motion/kinematics.h"
+#include "target/motion/motor_walk.h"
 #include "target/motion/planner.h"
 
 namespace lyr::motion {
@@ -33,9 +36,6 @@ using StepCounts = std::array<std::int64_t, motor_count>;
 
 class StepGenerator {
 public:
-    // Twice the rounding of a coordinate of 1 m at 5000 steps per mm.
-    static constexpr double touch_steps = 1e-9;
-
     // All motors are at count 0 at the origin.
     StepGenerator(const Kinematics& kinematics, const Point& origin);
 
@@ -48,11 +48,24 @@ public:
     const StepCounts& counts() const { return counts_; }
 
 private:
-    struct Motor;
+    struct Pending {
+        MotorWalk walk;
+        std::size_t phase = 0;  // of the profile, in which the next step lies
+    };
+
+    void find(std::size_t motor);
+    void take(std::size_t motor, StepEvent& event);
 
     Kinematics kinematics_;
     Point origin_;
+    Profile profile_;
+    std::int64_t start_ns_ = 0;
+    double start_part_ns_ = 0;
+    std::array<Pending, motor_count> pending_;
+    std::array<std::int64_t, motor_count> next_ns_;  // since start_ns_
     StepCounts counts_{};
+    double extruder_part_ = 0;  // of a step, that the extruder's ideal is ahead of its count
+    std::int64_t last_ns_ = std::numeric_limits<std::int64_t>::min();
 };
 
 }  // namespace lyr::motion
