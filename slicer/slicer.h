@@ -47,7 +47,7 @@ using Progress = std::function<void(const char* stage, std::size_t done, std::si
 struct Summary {
     std::size_t solids = 0, faces = 0, layers = 0, contours = 0, circles = 0, lines = 0, arcs = 0;
     std::uint64_t bytes = 0;
-    Eigen::AlignedBox3d box;  // of the model, as it is printed
+    Eigen::AlignedBox3d box{};  // of the model, as it is printed
 };
 
 struct SectionFigures {

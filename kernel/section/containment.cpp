@@ -74,6 +74,25 @@ double handedness(const Frame& frame) {
     return frame.x.cross(frame.y).dot(frame.z) < 0 ? -1 : 1;
 }
 
+// The outer sheet of a torus whose tube passes over the axis is closed at two poles, like a sphere.
+bool is_spindle(const Torus& torus) { return torus.minor_mm > torus.major_mm; }
+
+// Where a point of a sphere, or of a spindle torus' outer sheet, is on the unit sphere.
+Vector3 globe_direction(const Surface& surface, const Point3& point) {
+    if (const auto* sphere = std::get_if<Sphere>(&surface)) {
+        return (point - sphere->frame.origin).normalized();
+    }
+    const Torus& torus = std::get<Torus>(surface);
+    const Point3 local = torus.frame.to_local(point);
+    const double across = std::hypot(local.x(), local.y());
+    const double tube = std::atan2(local.z(), across - torus.major_mm);
+    const double pole = std::acos(-torus.major_mm / torus.minor_mm);
+    const double latitude = std::clamp(tube / pole, -1.0, 1.0) * full_turn_rad / 4;
+    const double around = std::atan2(local.y(), local.x());
+    return std::cos(latitude) * (std::cos(around) * torus.frame.x + std::sin(around) * torus.frame.y) +
+           std::sin(latitude) * torus.frame.z;
+}
+
 struct UvStep {
     Point2 from, by;
 };
@@ -112,9 +131,10 @@ Containment::Containment(const Model& model, FaceId id, const std::vector<double
 bool Containment::holds(const Point3& point, double z_mm) const {
     if (std::holds_alternative<Cylinder>(surface_)) return on_cylinder(z_mm);
     if (const auto* cone = std::get_if<Cone>(&surface_)) return on_cone(*cone, z_mm);
-    if (const auto* sphere = std::get_if<Sphere>(&surface_)) return on_sphere(*sphere, point);
-    if (const auto* torus = std::get_if<Torus>(&surface_)) return on_torus(*torus, point);
-    return false;
+    if (std::holds_alternative<Sphere>(surface_)) return on_globe(point);
+    const auto* torus = std::get_if<Torus>(&surface_);
+    if (!torus) return false;
+    return is_spindle(*torus) ? on_globe(point) : on_torus(*torus, point);
 }
 
 bool Containment::holds_apex() const {
@@ -140,14 +160,13 @@ bool Containment::on_cone(const Cone& cone, double z_mm) const {
     return winding != 0;
 }
 
-bool Containment::on_sphere(const Sphere& sphere, const Point3& point) const {
-    const Point3& centre = sphere.frame.origin;
-    const Vector3 pole = (point - centre).normalized();
+bool Containment::on_globe(const Point3& point) const {
+    const Vector3 pole = globe_direction(surface_, point);
     const Vector3 x = pole.unitOrthogonal(), y = pole.cross(x);
     const double sense = same_sense_ ? 1 : -1;
     for (const Outline& outline : outlines_) {
         const auto project = [&](const Point3& p) {
-            const Vector3 ray = (p - centre).normalized();
+            const Vector3 ray = globe_direction(surface_, p);
             return Point2(Point2(x.dot(ray), y.dot(ray)) / (1 - pole.dot(ray)));
         };
         double doubled_area = 0;
@@ -157,7 +176,8 @@ bool Containment::on_sphere(const Sphere& sphere, const Point3& point) const {
             doubled_area += cross(before, here);
             before = here;
         }
-        // Seen from outside, projecting from the pole mirrors the sphere: clockwise turns counter-clockwise.
+        // Seen from outside, projecting from the pole mirrors the globe: clockwise turns
+        // counter-clockwise.
         if (sense * doubled_area < 0) return false;
     }
     return true;

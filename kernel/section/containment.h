@@ -8,7 +8,7 @@
 // are an eighth of a turn apart; an edge that the face uses in both directions, a seam, bounds nothing and is left
 // out):
 //   cylinder, cone   the component is in the face if the loops on its unbounded side wind around the axis
-//   sphere           seen in stereographic projection from a point of the component, every loop of the face runs
+//   sphere           (and the outer sheet of a torus whose tube passes over the axis) seen in stereographic projection from a point of the component, every loop of the face runs
 //                    clockwise: the point at infinity is on its left
 //   torus            the nearest loop ahead along the tube's circle, or else along the axis' circle, has the
 //                    face on the near side; with neither, every loop is a hole
@@ -40,7 +40,7 @@ public:
 private:
     bool on_cylinder(double z_mm) const;
     bool on_cone(const Cone& cone, double z_mm) const;
-    bool on_sphere(const Sphere& sphere, const Point3& point) const;
+    bool on_globe(const Point3& point) const;
     bool on_torus(const Torus& torus, const Point3& point) const;
 
     Surface surface_;

@@ -63,9 +63,11 @@ SurfaceSection level_circles(const Torus& torus, bool same_sense, double height_
     // The two circles are one: the plane touches the tube's top or bottom.
     if (half2 <= resolution_mm * resolution_mm) return TouchSection{};
     const double half = std::sqrt(half2);
+    // Beyond the axis the inner circle would be on the tube's other sheet.
+    const int count = half > torus.major_mm ? 1 : 2;
     return CircleSection{centre,
-                         2,
-                         {torus.major_mm + half, std::abs(torus.major_mm - half)},
+                         count,
+                         {torus.major_mm + half, torus.major_mm - half},
                          {same_sense, !same_sense},
                          torus.major_mm};
 }

@@ -31,8 +31,8 @@ public:
     }
     EdgeId edge(const Curve& curve, VertexId start, VertexId end, bool same_sense = true) {
         Diagnostics found;
-        model_.edges.push_back(make_edge(curve, start, end, same_sense, 1000 + model_.edges.size(),
-                                         model_, 0, found));
+        model_.edges.push_back(
+            make_edge(curve, start, end, same_sense, 1000 + model_.edges.size(), model_, 0, found));
         problems_.insert(problems_.end(), found.begin(), found.end());
         return EdgeId{model_.edges.size() - 1};
     }
@@ -45,10 +45,9 @@ public:
     }
     void face(const Surface& surface, bool same_sense,
               std::initializer_list<std::vector<Use>> loops) {
-        model_.faces.push_back({surface, same_sense,
-                                static_cast<std::uint32_t>(model_.loops.size()),
-                                static_cast<std::uint32_t>(loops.size()), ShellId{0},
-                                2000 + model_.faces.size()});
+        model_.faces.push_back(
+            {surface, same_sense, static_cast<std::uint32_t>(model_.loops.size()),
+             static_cast<std::uint32_t>(loops.size()), ShellId{0}, 2000 + model_.faces.size()});
         for (const auto& uses : loops) {
             model_.loops.push_back({static_cast<std::uint32_t>(model_.coedges.size()),
                                     static_cast<std::uint32_t>(uses.size()), 0});
@@ -56,7 +55,8 @@ public:
         }
     }
     Model finish() {
-        model_.shells.push_back({0, static_cast<std::uint32_t>(model_.faces.size()), SolidId{0}, 0});
+        model_.shells.push_back(
+            {0, static_cast<std::uint32_t>(model_.faces.size()), SolidId{0}, 0});
         model_.solids.push_back({"solid", 0, 1, 0});
         return std::move(model_);
     }
@@ -213,6 +213,18 @@ inline Model torus(double major, double minor, bool seam) {
     tube.z = -Vector3::UnitY();
     const EdgeId across = b.edge(Circle{tube, minor}, v, v);
     b.face(surface, true, {{{around}, {across}, {around, true}, {across, true}}});
+    return b.finish();
+}
+
+// A dome: the outer sheet of a spindle torus (minor > major) over the circle of the given radius, down to its rim
+// plane. Its top is the torus' pole, or, where that lies lower, a dent around it.
+inline Model spindle_dome(double major, double minor, double radius) {
+    Builder b;
+    const double z = std::sqrt(minor * minor - (radius - major) * (radius - major));
+    const VertexId v = b.vertex(radius, 0, z);
+    const EdgeId rim = b.circle(z, radius, v);
+    b.face(Torus{Builder::frame_at({0, 0, 0}), major, minor}, true, {{{rim}}});
+    b.face(Plane{Builder::looking({0, 0, z}, -Vector3::UnitZ())}, true, {{{rim, true}}});
     return b.finish();
 }
 

@@ -14,8 +14,8 @@ void check_edge(const Curve& curve, const Point3& a, const Point3& b, bool same_
     model.vertices = {{a, 1}, {b, 2}};
     const bool closed = (a - b).norm() == 0;
     Diagnostics problems;
-    const Edge edge = make_edge(curve, VertexId{0}, VertexId{closed ? 0u : 1u}, same_sense, 7, model,
-                                0, problems);
+    const Edge edge = make_edge(curve, VertexId{0}, VertexId{closed ? 0u : 1u}, same_sense, 7,
+                                model, 0, problems);
     CHECK(problems.empty());
     CHECK((evaluate(curve, edge.t_start) - a).norm() < 1e-9);
     CHECK((evaluate(curve, edge.t_end) - b).norm() < 1e-9);
@@ -24,8 +24,7 @@ void check_edge(const Curve& curve, const Point3& a, const Point3& b, bool same_
     constexpr int steps = 2000;
     Point3 before = a;
     for (int i = 1; i <= steps; ++i) {
-        const Point3 here =
-            evaluate(curve, edge.t_start + (edge.t_end - edge.t_start) * i / steps);
+        const Point3 here = evaluate(curve, edge.t_start + (edge.t_end - edge.t_start) * i / steps);
         length += (here - before).norm();
         before = here;
     }

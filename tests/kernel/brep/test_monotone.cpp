@@ -19,7 +19,8 @@ std::vector<Model> turned_solids() {
                                frustum(1, 3, 5, Side::seam), torus(5, 2, true), sphere(2, true)}) {
         result.push_back(model);
         for (int i = 0; i < 4; ++i) {
-            const Vector3 axis = Vector3(normal(random), normal(random), normal(random)).normalized();
+            const Vector3 axis =
+                Vector3(normal(random), normal(random), normal(random)).normalized();
             result.push_back(
                 transformed(model, Eigen::Affine3d(Eigen::AngleAxisd(normal(random), axis))));
         }

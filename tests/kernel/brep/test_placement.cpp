@@ -13,7 +13,8 @@ namespace {
 double worst_gap(const Model& model) {
     double worst = 0;
     for (const Edge& edge : model.edges) {
-        worst = std::max(worst, (evaluate(edge.curve, edge.t_start) - model[edge.start].point).norm());
+        worst =
+            std::max(worst, (evaluate(edge.curve, edge.t_start) - model[edge.start].point).norm());
         worst = std::max(worst, (evaluate(edge.curve, edge.t_end) - model[edge.end].point).norm());
     }
     for (const Face& face : model.faces) {
@@ -49,7 +50,8 @@ TEST_CASE("placement 1: rotating, moving, scaling and mirroring keeps everything
 }
 
 TEST_CASE("placement 2: up becomes z, also for straight down") {
-    for (const Vector3& up : {Vector3(0, 0, 1), Vector3(0, 0, -2), Vector3(1, 0, 0), Vector3(1, -2, 3)}) {
+    for (const Vector3& up :
+         {Vector3(0, 0, 1), Vector3(0, 0, -2), Vector3(1, 0, 0), Vector3(1, -2, 3)}) {
         const Vector3 turned = turned_up(up).linear() * up.normalized();
         CHECK((turned - Vector3::UnitZ()).norm() < 1e-12);
         CHECK(turned_up(up).linear().determinant() == doctest::Approx(1));

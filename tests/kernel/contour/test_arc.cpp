@@ -53,7 +53,8 @@ TEST_CASE("arc 1: points and tangents lie on the circle, in the direction of tra
             const double a = angle + share * sweep;
             const Point2 expected = centre + radius * Vector2(std::cos(a), std::sin(a));
             CHECK((point_at(start, arc, share) - expected).norm() < bound);
-            CHECK(distance_mm(start, arc, expected) < bound * std::max(1.0, 1e-3 / std::abs(sweep)));
+            CHECK(distance_mm(start, arc, expected) <
+                  bound * std::max(1.0, 1e-3 / std::abs(sweep)));
         }
         const auto tangent = [&](double a) {
             return Vector2(turn * Vector2(-std::sin(a), std::cos(a)));

@@ -11,9 +11,13 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr double allowed_mm = 1e-4;
 
-Path square() { return {{0, 0}, {{{4, 0}}, {{4, 4}}, {{0, 4}}, {{0, 0}}}}; }
+Path square() {
+    return {{0, 0}, {{{4, 0}}, {{4, 4}}, {{0, 4}}, {{0, 0}}}};
+}
 
-Point2 on(double angle) { return {5 + 3 * std::cos(angle), -2 + 3 * std::sin(angle)}; }
+Point2 on(double angle) {
+    return {5 + 3 * std::cos(angle), -2 + 3 * std::sin(angle)};
+}
 
 Path circle_in(const std::vector<double>& cuts, double turn) {
     Path path{on(turn * cuts.front()), {}};

@@ -27,7 +27,9 @@ PlaneCurve hyperbola(double a, double b) {
 
 // An inflection in the middle.
 PlaneCurve sine() {
-    return [](double t) { return CurvePoint{{t, std::sin(t)}, Vector2(1, std::cos(t)).normalized()}; };
+    return [](double t) {
+        return CurvePoint{{t, std::sin(t)}, Vector2(1, std::cos(t)).normalized()};
+    };
 }
 
 struct Fitted {
@@ -67,10 +69,12 @@ Fitted fit(const PlaneCurve& curve, double from, double to, double allowed_mm) {
 
 TEST_CASE("fit 1, 2: arcs share tangents and stay within the bound everywhere") {
     for (const double allowed_mm : {0.05, 0.0025, 0.0001}) {
-        for (const auto& [curve, from, to] :
-             {std::tuple{ellipse(5, 4), 0.3, 4.5}, {ellipse(50, 1), 0.0, 2 * pi},
-              {ellipse(1, 1000), -1.0, 3.0}, {hyperbola(2, 1), -3.0, 3.0},
-              {hyperbola(0.001, 1), -4.0, 4.0}, {sine(), 0.0, 9.0}}) {
+        for (const auto& [curve, from, to] : {std::tuple{ellipse(5, 4), 0.3, 4.5},
+                                              {ellipse(50, 1), 0.0, 2 * pi},
+                                              {ellipse(1, 1000), -1.0, 3.0},
+                                              {hyperbola(2, 1), -3.0, 3.0},
+                                              {hyperbola(0.001, 1), -4.0, 4.0},
+                                              {sine(), 0.0, 9.0}}) {
             const Fitted fitted = fit(curve, from, to, allowed_mm);
             CHECK(fitted.worst_mm <= allowed_mm);
             CHECK(fitted.worst_turn < 1e-6);
@@ -78,7 +82,8 @@ TEST_CASE("fit 1, 2: arcs share tangents and stay within the bound everywhere") 
     }
 }
 
-TEST_CASE("fit 3: a circle takes few arcs and a curve's arcs grow with the cube root of the bound") {
+TEST_CASE(
+    "fit 3: a circle takes few arcs and a curve's arcs grow with the cube root of the bound") {
     CHECK(fit(ellipse(3, 3), 0, 2 * pi, 0.001).arcs.size() <= 12);
     const auto coarse = fit(ellipse(50, 20), 0, 2 * pi, 0.008).arcs.size();
     const auto fine = fit(ellipse(50, 20), 0, 2 * pi, 0.001).arcs.size();
