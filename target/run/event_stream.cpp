@@ -15,16 +15,12 @@ Result<EventStream> EventStream::open(const std::string& path, const config::Pri
 Result<bool> EventStream::next(std::vector<LineEvent>& events) {
     if (!begun_) schedule_.begin(driver_wake_ns, events);
     begun_ = true;
-    if (ended_) return false;
     batch_.clear();
     const Result<bool> more = steps_.next(batch_);
     if (!more) return more.error();
     schedule_.append(batch_, events);
-    if (!*more) {
-        schedule_.finish(steps_.time_ns(), events);
-        ended_ = true;
-    }
-    return true;
+    if (!*more) schedule_.finish(steps_.time_ns(), events);
+    return *more;
 }
 
 }  // namespace lyr::run

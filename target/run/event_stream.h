@@ -24,7 +24,7 @@ public:
     static Result<EventStream> open(const std::string& path, const config::Printer& printer,
                                     double filament_diameter_mm);
 
-    // Appends the next events; false once there are none left.
+    // Appends the next events; false: these were the last.
     Result<bool> next(std::vector<LineEvent>& events);
 
     const StepStream& steps() const { return steps_; }
@@ -38,7 +38,7 @@ private:
     StepStream steps_;
     PulseSchedule schedule_;
     std::vector<Step> batch_;
-    bool begun_ = false, ended_ = false;
+    bool begun_ = false;
 };
 
 }  // namespace lyr::run

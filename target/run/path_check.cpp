@@ -16,20 +16,22 @@ using config::axis_x;
 using config::axis_y;
 
 constexpr double pi = std::numbers::pi;
+// Of angles in double precision, in turns.
+constexpr double rounding_turns = 1e-12;
 
-// The first share from `share` on at which the axis is at `middle_mm` or beyond in the direction asked
-// for, less the slack.
+// Looks for the first share from a given one on at which an axis passes a middle in one direction.
 struct Crossing {
     const PathCurve& curve;
     std::size_t axis;
     double middle_mm, slack_mm;
-    double sign;  // +1: upwards
+    double sign;    // +1: upwards
+    bool reversal;  // the axis passed the same middle the other way last
 
     double ahead(double at_mm) const { return sign * (at_mm - middle_mm); }
 
     std::optional<double> on_line(double share) const {
         const double change = curve.to_mm[axis] - curve.from_mm[axis];
-        if (ahead(curve.to_mm[axis]) < -slack_mm || sign * change <= 0) return std::nullopt;
+        if (sign * change <= 0 || ahead(curve.to_mm[axis]) < -slack_mm) return std::nullopt;
         return std::clamp((middle_mm - curve.from_mm[axis]) / change, share, 1.0);
     }
 
@@ -37,22 +39,28 @@ struct Crossing {
         const double center = axis == axis_x ? curve.center_x_mm : curve.center_y_mm;
         double reach = sign * (middle_mm - center) / curve.radius_mm;
         if (reach > 1 && (reach - 1) * curve.radius_mm <= slack_mm) reach = 1;
-        if (reach > 1) return std::nullopt;
+        if (reach > 1 || reach < -1) return std::nullopt;
         // Turned so that "far enough" is cos(turned) >= reach, and time runs towards larger angles.
         const double angle = curve.start_angle_rad + curve.sweep_rad * share -
                              (axis == axis_y ? pi / 2 : 0) + (sign < 0 ? pi : 0);
         const double turned = curve.sweep_rad < 0 ? -angle : angle;
-        const double half_width = std::acos(std::max(reach, -1.0));
-        const double turns = std::ceil((turned + half_width) / (2 * pi));
+        const double half_width = std::acos(reach);
+        // An entry that rounding puts just behind the share is the one looked for.
+        const double turns = std::ceil((turned + half_width) / (2 * pi) - rounding_turns);
         const double entry = 2 * pi * turns - half_width;
-        const double at = share + (entry - turned) / std::abs(curve.sweep_rad);
+        const double at = std::max(share, share + (entry - turned) / std::abs(curve.sweep_rad));
         if (at <= 1) return at;
-        return ahead(curve.to_mm[axis]) >= -slack_mm ? std::optional(1.0) : std::nullopt;
+        if (reversal || ahead(curve.to_mm[axis]) < -slack_mm) return std::nullopt;
+        return 1.0;
     }
 
     std::optional<double> from(double share) const {
-        if (ahead(curve.at(share)[axis]) >= -slack_mm) return share;
-        return curve.is_arc && axis <= axis_y ? on_arc(share) : on_line(share);
+        const double now_mm = ahead(curve.at(share)[axis]);
+        // Other axes, due a moment later by rounding, have led the curve on past the middle.
+        if (now_mm > slack_mm) return share;
+        const auto found = curve.is_arc && axis <= axis_y ? on_arc(share) : on_line(share);
+        if (found || reversal || now_mm < -slack_mm) return found;
+        return share;
     }
 };
 
@@ -81,9 +89,11 @@ void PathCheck::step(const DecodedStep& step) {
     const double sign = step.positive ? 1 : -1;
     const auto before = static_cast<double>(step.before[step.axis]);
     const double middle_mm = position_mm(step.axis, before + sign / 2);
-    const double slack_mm = tie_steps / steps_per_mm_[step.axis];
+    const bool reversal = last_sign_[step.axis] * sign < 0;
+    last_sign_[step.axis] = sign;
+    const double slack_mm = touch_steps / steps_per_mm_[step.axis];
     for (;;) {
-        const Crossing crossing{curve_, step.axis, middle_mm, slack_mm, sign};
+        const Crossing crossing{curve_, step.axis, middle_mm, slack_mm, sign, reversal};
         const std::optional<double> share = crossing.from(share_);
         follow_to(share.value_or(1.0), step.before);
         if (share || lost()) break;

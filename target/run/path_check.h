@@ -14,7 +14,8 @@
 //     deviates by exactly half a step.
 //  2. Steps that are missing, too many, of the wrong axis or direction, or in an order that no motion
 //     along the curve gives, show as a deviation of more than half a step.
-//  3. Steps that pass their middles within `tie_steps` of each other may come in either order.
+//  3. Steps of the same point of the curve may come in either order. A curve that turns back within
+//     `touch_steps` of a middle may be stepped to or not.
 //  4. Once the deviation exceeds `lost_steps`, following ends; lost() tells.
 
 #pragma once
@@ -58,9 +59,9 @@ struct Deviation {
 
 class PathCheck {
 public:
-    // Steps of different axes that are this close on the curve count as simultaneous: pulses carry whole
-    // nanoseconds, in which an axis at the highest step rates moves by up to so much.
-    static constexpr double tie_steps = 1e-3;
+    // A curve that comes this close to a middle may have touched it: far above rounding, far below what
+    // a motor can show.
+    static constexpr double touch_steps = 1e-6;
     static constexpr double lost_steps = 16;
 
     // Position 0 of the decoder is at origin_mm.
@@ -86,7 +87,8 @@ private:
     AxisValues steps_per_mm_, origin_mm_;
     CurveSource source_;
     PathCurve curve_;
-    double share_ = 1;  // of the curve, up to which it was followed
+    AxisValues last_sign_{};  // of each axis's last step
+    double share_ = 1;        // of the curve, up to which it was followed
     bool ended_ = false;
     Deviation deviation_;
     Status status_ = Done{};

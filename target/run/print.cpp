@@ -185,6 +185,9 @@ Result<PrintReport> run(const PrintJob& job, const Prepared& prepared, gpio::Gpi
 
 Status check_demands(const Inspection& inspection, bool no_heat, Diagnostics& notes) {
     const Demands& demands = inspection.demands;
+    if (!demands.hottest.empty()) notes.push_back(note("not heated: " + heat_text(demands)));
+    if (!demands.fans.empty())
+        notes.push_back(note("fans are not switched: no line is known for them"));
     if (!demands.hottest.empty() && !no_heat)
         return Diagnostic{
             Severity::error,
@@ -198,9 +201,6 @@ Status check_demands(const Inspection& inspection, bool no_heat, Diagnostics& no
                           "the file pauses " + std::to_string(demands.pauses) +
                               " times, and this version cannot be told to go on",
                           {}};
-    if (!demands.hottest.empty()) notes.push_back(note("not heated: " + heat_text(demands)));
-    if (!demands.fans.empty())
-        notes.push_back(note("fans are not switched: no line is known for them"));
     return Done{};
 }
 

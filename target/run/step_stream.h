@@ -24,7 +24,7 @@ public:
     static Result<StepStream> open(const std::string& path, const config::Printer& printer,
                                    double filament_diameter_mm);
 
-    // Appends the next steps; false once there are none left.
+    // Appends the next steps; false: these were the last.
     Result<bool> next(std::vector<Step>& steps);
 
     const std::vector<motion::PlannedMove>& moves() const { return moves_; }

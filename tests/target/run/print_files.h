@@ -118,7 +118,7 @@ inline void draw_hatch(const Pen& pen) {
 inline void draw_climb(const Pen& pen) {
     pen.path(50);
     pen.travel(0, 0);
-    const double base_mm = pen.layer.position().z * 1e-3;
+    const double base_mm = static_cast<double>(pen.layer.position().z) * 1e-3;
     pen.line(6, 0, base_mm + 0.05);
     pen.line(6, 6, base_mm + 0.1);
     pen.layer.width(0.6);

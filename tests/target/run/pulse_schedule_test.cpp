@@ -126,10 +126,14 @@ TEST_CASE("schedule 3: the shifts listed say how late each step is") {
     CHECK(next == shifts.size());
 }
 
-TEST_CASE("schedule 4: events are in order, each nanosecond once, and keep the idle lines") {
+TEST_CASE(
+    "schedule 4: events are in order, each nanosecond once, and keep the idle lines to the end") {
     const gpio::LineMask enable = gpio::line_bit(8) | gpio::line_bit(9);
     PulseSchedule schedule(timing, enable);
-    const std::vector<LineEvent> events = schedule_all(random_steps(5'000, 2'000, 3), schedule);
+    std::vector<LineEvent> events = schedule_all(random_steps(5'000, 2'000, 3), schedule);
+    CHECK(events.back().levels == 0);
+    CHECK(events.back().time_ns > events[events.size() - 2].time_ns);
+    events.pop_back();
     std::size_t wrong = 0;
     for (std::size_t i = 0; i < events.size(); ++i) {
         wrong += i > 0 && events[i].time_ns <= events[i - 1].time_ns;
@@ -143,7 +147,7 @@ TEST_CASE("schedule 4: steps of the same nanosecond leave in one event") {
     PulseSchedule schedule(timing, 0);
     const std::vector<LineEvent> events =
         schedule_all({{9'000, 0, false}, {9'000, 1, false}, {9'000, 3, false}}, schedule);
-    REQUIRE(events.size() == 2);
+    REQUIRE(events.size() == 3);
     CHECK(events[0].levels == (step_bit(0) | step_bit(1) | step_bit(3)));
     CHECK(events[1].time_ns == 11'000);
     CHECK(events[1].levels == 0);

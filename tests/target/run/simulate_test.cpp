@@ -215,8 +215,8 @@ TEST_CASE(
     "simulate: drivers that are slow to turn delay everything alike, and the path keeps its "
     "shape") {
     config::Printer printer = config::generic_printer();
-    printer.pulse.direction_setup_ns = 900'000;
-    printer.pulse.direction_hold_ns = 900'000;
+    printer.pulse.direction_setup_ns = 4'000'000;
+    printer.pulse.direction_hold_ns = 4'000'000;
     const SimulationReport report = simulated(write_print("slow_turn", {draw_circles}), printer);
     CHECK(report.delayed_ns > 0);
     check_half_step(report);
