@@ -34,56 +34,62 @@ constexpr const char* examples =
     "layers as have their middle below the part's top.\n"
     "Exit status: 0 done, 2 options, 3 input, 4 not supported yet, 5 geometry, 6 output.\n";
 
+// An option for a number within bounds, shown with its unit and default.
+void add_number(CLI::App& app, const std::string& name, double& target, double low, double high,
+                const std::string& unit, const std::string& text) {
+    char shown[64];
+    std::snprintf(shown, sizeof shown, "%s  [%g]", unit.c_str(), target);
+    app.add_option(name, target, text)->check(CLI::Range(low, high))->option_text(shown);
+}
+
+void add_files(CLI::App& app, Arguments& arguments) {
+    app.add_option("part", arguments.step_path, "STEP file (ISO 10303-21; AP203, AP214, AP242)")
+        ->required()
+        ->option_text("FILE");
+    app.add_option("-o,--output", arguments.lyr_path,
+                   "The print to write; without it, the part's name with .lyr")
+        ->option_text("FILE");
+    app.add_option("--section-at", arguments.heights_path,
+                   "Only cut, at the heights of this file (mm, the model's own coordinates, one a "
+                   "line); needs --report")
+        ->option_text("FILE");
+    app.add_option("--report", arguments.report_path,
+                   "Write a line of JSON a section: area, length, loops, lines, arcs, open ends")
+        ->option_text("FILE");
+}
+
 void add_options(CLI::App& app, Arguments& arguments) {
     slicer::Options& options = arguments.options;
     app.footer(examples);
     app.set_version_flag("--version", "stepc " LYR_VERSION);
-    app.add_option("part", arguments.step_path, "STEP file (ISO 10303-21; AP203, AP214, AP242)")
-        ->required();
-    app.add_option("-o,--output", arguments.lyr_path,
-                   "The print to write; default: the part's name with .lyr");
-    app.add_option("--layer-height", options.layer_height_mm, "Thickness of a layer, mm")
-        ->check(CLI::Range(0.001, 10.0))
-        ->capture_default_str();
-    app.add_option("--tolerance", options.tolerance.total_mm,
-                   "Greatest distance of the printed contour from the exact section, mm")
-        ->check(CLI::Range(0.00001, 1.0))
-        ->capture_default_str();
-    app.add_option("--up", arguments.up, "Build direction in the model's coordinates: x,y,z")
+    add_files(app, arguments);
+    add_number(app, "--layer-height", options.layer_height_mm, 0.001, 10, "MM",
+               "Thickness of a layer");
+    add_number(app, "--tolerance", options.tolerance.total_mm, 1e-5, 1, "MM",
+               "Greatest distance of the printed contour from the exact section");
+    app.add_option("--up", arguments.up, "Build direction in the model's coordinates")
         ->delimiter(',')
         ->expected(3)
-        ->capture_default_str();
-    app.add_option("--at", arguments.bed_position,
-                   "Where on the bed the part's lower left corner lies, mm: x,y")
+        ->option_text("X,Y,Z  [0,0,1]");
+    app.add_option("--at", arguments.bed_position, "Where on the bed the part's corner lies")
         ->delimiter(',')
         ->expected(2)
-        ->capture_default_str();
-    app.add_option("--line-width", options.line_width_mm, "Width of an extruded line, mm")
-        ->check(CLI::Range(0.01, 10.0))
-        ->capture_default_str();
-    app.add_option("--wall-speed", options.wall_speed_mm_s, "Speed along contours, mm/s")
-        ->check(CLI::Range(0.1, 2000.0))
-        ->capture_default_str();
-    app.add_option("--infill-speed", options.infill_speed_mm_s, "Speed of the fill, mm/s")
-        ->check(CLI::Range(0.1, 2000.0))
-        ->capture_default_str();
-    app.add_option("--nozzle-temp", options.nozzle_temp_c, "Nozzle temperature, deg C; 0: off")
-        ->check(CLI::Range(0.0, 500.0))
-        ->capture_default_str();
-    app.add_option("--bed-temp", options.bed_temp_c, "Bed temperature, deg C; 0: off")
-        ->check(CLI::Range(0.0, 200.0))
-        ->capture_default_str();
-    app.add_option(
-        "--section-at", arguments.heights_path,
-        "Only cut at the heights of this file (mm, model coordinates, one a line); needs --report");
-    app.add_option("--report", arguments.report_path,
-                   "Write a line of JSON a section: area, length, loops, lines, arcs, open ends");
+        ->option_text("X,Y  [0,0]");
+    add_number(app, "--line-width", options.line_width_mm, 0.01, 10, "MM",
+               "Width of an extruded line");
+    add_number(app, "--wall-speed", options.wall_speed_mm_s, 0.1, 2000, "MM/S",
+               "Speed along contours");
+    add_number(app, "--infill-speed", options.infill_speed_mm_s, 0.1, 2000, "MM/S",
+               "Speed of the fill");
+    add_number(app, "--nozzle-temp", options.nozzle_temp_c, 0, 500, "DEG_C",
+               "Nozzle temperature; 0: off");
+    add_number(app, "--bed-temp", options.bed_temp_c, 0, 200, "DEG_C", "Bed temperature; 0: off");
     app.add_flag("--allow-open", options.allow_open,
                  "Leave out contours that do not close instead of stopping");
     app.add_option("--threads", options.threads,
-                   "Threads; 0: one a processor; the result is the same")
+                   "0: one a processor; the result is the same for any number")
         ->check(CLI::Range(0, 1024))
-        ->capture_default_str();
+        ->option_text("N  [0]");
 }
 
 // Redrawn at most every tenth of a second, and only where someone can see it.
@@ -195,6 +201,12 @@ int main_of(int argc, char** argv) {
     }
     if (arguments.lyr_path.empty()) {
         arguments.lyr_path = std::filesystem::path(arguments.step_path).replace_extension(".lyr");
+    }
+    for (const std::string& output : {arguments.lyr_path, arguments.report_path}) {
+        std::error_code none;
+        if (std::filesystem::equivalent(arguments.step_path, output, none)) {
+            return fail_usage("the output would overwrite the part: " + output);
+        }
     }
     const auto begin = std::chrono::steady_clock::now();
     ProgressLine line;
