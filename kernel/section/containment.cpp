@@ -75,7 +75,9 @@ double handedness(const Frame& frame) {
 }
 
 // The outer sheet of a torus whose tube passes over the axis is closed at two poles, like a sphere.
-bool is_spindle(const Torus& torus) { return torus.minor_mm > torus.major_mm; }
+bool is_spindle(const Torus& torus) {
+    return torus.minor_mm > torus.major_mm;
+}
 
 // Where a point of a sphere, or of a spindle torus' outer sheet, is on the unit sphere.
 Vector3 globe_direction(const Surface& surface, const Point3& point) {
@@ -89,13 +91,10 @@ Vector3 globe_direction(const Surface& surface, const Point3& point) {
     const double pole = std::acos(-torus.major_mm / torus.minor_mm);
     const double latitude = std::clamp(tube / pole, -1.0, 1.0) * full_turn_rad / 4;
     const double around = std::atan2(local.y(), local.x());
-    return std::cos(latitude) * (std::cos(around) * torus.frame.x + std::sin(around) * torus.frame.y) +
+    return std::cos(latitude) *
+               (std::cos(around) * torus.frame.x + std::sin(around) * torus.frame.y) +
            std::sin(latitude) * torus.frame.z;
 }
-
-struct UvStep {
-    Point2 from, by;
-};
 
 UvStep uv_step(const Surface& surface, const Point3& a, const Point3& b) {
     const Point2 from = invert(surface, a), to = invert(surface, b);
@@ -110,22 +109,34 @@ Containment::Containment(const Model& model, FaceId id, const std::vector<double
     : surface_(model[id].surface), same_sense_(model[id].same_sense) {
     std::vector<Coedge> rest = bounding_coedges(model, model[id]);
     while (!rest.empty()) {
-        Outline outline;
-        outline.height_mm = vertex_level_mm[model.start_of(rest.front()).value];
+        std::vector<Point3> points;
         const VertexId origin = model.start_of(rest.front());
         for (auto next = rest.begin(); next != rest.end();) {
-            append_outline(model[next->edge], next->reversed, outline.points);
+            append_outline(model[next->edge], next->reversed, points);
             const VertexId at = model.end_of(*next);
             rest.erase(next);
             if (at == origin) break;
             next = std::find_if(rest.begin(), rest.end(),
                                 [&](const Coedge& coedge) { return model.start_of(coedge) == at; });
         }
-        std::visit(
-            [&](const auto& s) { outline.winding = winding_around(s.frame, outline.points); },
-            surface_);
-        outlines_.push_back(std::move(outline));
+        outlines_.push_back(prepared(points, vertex_level_mm[origin.value]));
     }
+}
+
+Outline Containment::prepared(const std::vector<Point3>& points, double height_mm) const {
+    Outline outline{.height_mm = height_mm, .winding = 0, .directions = {}, .steps = {}};
+    const auto* torus = std::get_if<Torus>(&surface_);
+    if (std::holds_alternative<Sphere>(surface_) || (torus && is_spindle(*torus))) {
+        for (const Point3& p : points) outline.directions.push_back(globe_direction(surface_, p));
+    } else if (torus) {
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            outline.steps.push_back(uv_step(surface_, points[i], points[(i + 1) % points.size()]));
+        }
+    } else {
+        std::visit([&](const auto& s) { outline.winding = winding_around(s.frame, points); },
+                   surface_);
+    }
+    return outline;
 }
 
 bool Containment::holds(const Point3& point, double z_mm) const {
@@ -134,7 +145,7 @@ bool Containment::holds(const Point3& point, double z_mm) const {
     if (std::holds_alternative<Sphere>(surface_)) return on_globe(point);
     const auto* torus = std::get_if<Torus>(&surface_);
     if (!torus) return false;
-    return is_spindle(*torus) ? on_globe(point) : on_torus(*torus, point);
+    return is_spindle(*torus) ? on_globe(point) : on_torus(point);
 }
 
 bool Containment::holds_apex() const {
@@ -164,15 +175,14 @@ bool Containment::on_globe(const Point3& point) const {
     const Vector3 pole = globe_direction(surface_, point);
     const Vector3 x = pole.unitOrthogonal(), y = pole.cross(x);
     const double sense = same_sense_ ? 1 : -1;
+    const auto project = [&](const Vector3& ray) {
+        return Point2(Point2(x.dot(ray), y.dot(ray)) / (1 - pole.dot(ray)));
+    };
     for (const Outline& outline : outlines_) {
-        const auto project = [&](const Point3& p) {
-            const Vector3 ray = globe_direction(surface_, p);
-            return Point2(Point2(x.dot(ray), y.dot(ray)) / (1 - pole.dot(ray)));
-        };
         double doubled_area = 0;
-        Point2 before = project(outline.points.back());
-        for (const Point3& p : outline.points) {
-            const Point2 here = project(p);
+        Point2 before = project(outline.directions.back());
+        for (const Vector3& direction : outline.directions) {
+            const Point2 here = project(direction);
             doubled_area += cross(before, here);
             before = here;
         }
@@ -183,18 +193,16 @@ bool Containment::on_globe(const Point3& point) const {
     return true;
 }
 
-bool Containment::on_torus(const Torus& torus, const Point3& point) const {
+bool Containment::on_torus(const Point3& point) const {
     const Point2 at = invert(surface_, point);
-    const double sense = (same_sense_ ? 1 : -1) * handedness(torus.frame);
+    const double sense = (same_sense_ ? 1 : -1) * handedness(std::get<Torus>(surface_).frame);
     // axis 0: along the tube at constant u; axis 1: around at constant v.
     for (const int fixed : {0, 1}) {
         const int along = 1 - fixed;
         double nearest = full_turn_rad;
         bool face_before = false, met = false;
         for (const Outline& outline : outlines_) {
-            for (std::size_t i = 0; i < outline.points.size(); ++i) {
-                const UvStep step = uv_step(surface_, outline.points[i],
-                                            outline.points[(i + 1) % outline.points.size()]);
+            for (const UvStep& step : outline.steps) {
                 const double start = std::remainder(step.from[fixed] - at[fixed], full_turn_rad);
                 const double end = start + step.by[fixed];
                 if ((start <= 0) == (end <= 0)) continue;
@@ -214,10 +222,8 @@ bool Containment::on_torus(const Torus& torus, const Point3& point) const {
     for (const Outline& outline : outlines_) {
         double doubled_area = 0;
         Point2 from = Point2::Zero();
-        for (std::size_t i = 0; i < outline.points.size(); ++i) {
-            const Point2 to = from + uv_step(surface_, outline.points[i],
-                                             outline.points[(i + 1) % outline.points.size()])
-                                         .by;
+        for (const UvStep& step : outline.steps) {
+            const Point2 to = from + step.by;
             doubled_area += cross(from, to);
             from = to;
         }

@@ -21,10 +21,17 @@
 
 namespace lyr {
 
+// From one point of an outline to the next in the torus' parameters, the short way round.
+struct UvStep {
+    Point2 from, by;
+};
+
+// One closed outline, in the form that its surface's method asks for.
 struct Outline {
-    std::vector<Point3> points;  // closed: the first follows the last
-    double height_mm = 0;        // of any vertex: its level
-    int winding = 0;             // around the axis of a cylinder or cone
+    double height_mm = 0;             // of any vertex: its level
+    int winding = 0;                  // cylinder, cone: around the axis
+    std::vector<Vector3> directions;  // sphere: on the unit sphere; the first follows the last
+    std::vector<UvStep> steps;        // torus
 };
 
 class Containment {
@@ -41,7 +48,8 @@ private:
     bool on_cylinder(double z_mm) const;
     bool on_cone(const Cone& cone, double z_mm) const;
     bool on_globe(const Point3& point) const;
-    bool on_torus(const Torus& torus, const Point3& point) const;
+    bool on_torus(const Point3& point) const;
+    Outline prepared(const std::vector<Point3>& points, double height_mm) const;
 
     Surface surface_;
     bool same_sense_;
