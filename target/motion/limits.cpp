@@ -15,8 +15,9 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// On an arc this share of the axes' acceleration is kept for changing speed; 0.8 is then left for the
-// turning (both are perpendicular), which costs a tenth of the highest speed on a circle.
+// On an arc this share of the weaker axis's acceleration is kept for changing speed; 0.8 is then left for
+// the turning (both are perpendicular), which costs a tenth of the highest speed on a circle. It is the
+// same for every piece of a circle, so that cutting one up does not make it slower.
 constexpr double tangential_share = 0.6;
 
 double ratio(double limit, double share) {
@@ -65,6 +66,7 @@ struct Plane {
         return std::min(ratio(x.speed_mm_s, std::sin(radius.high)),
                         ratio(y.speed_mm_s, std::cos(radius.low)));
     }
+    double weaker_mm_s2() const { return std::min(x.acceleration_mm_s2, y.acceleration_mm_s2); }
     double tangential_mm_s2(double centripetal) const {
         return std::min(left_over(centripetal, x.acceleration_mm_s2, radius),
                         left_over(centripetal, y.acceleration_mm_s2, radius.mirrored()));
@@ -102,15 +104,15 @@ MoveLimits along(const Arc& arc, const Move& move, double length_mm, const Limit
     const Plane plane{limits.axes[axis_x], limits.axes[axis_y], folded_sweep(arc)};
     const double level = arc.radius_mm * std::abs(arc.sweep_rad) / length_mm;
     const double most = std::min(plane.tangential_mm_s2(0), level * own.acceleration_mm_s2);
-    const double centripetal =
-        std::min(plane.centripetal_mm_s2(tangential_share * most), requested_mm_s2(move));
+    const double kept = std::min(most, tangential_share * plane.weaker_mm_s2());
+    const double centripetal = std::min(plane.centripetal_mm_s2(kept), requested_mm_s2(move));
     own.speed_mm_s = std::min({own.speed_mm_s, plane.speed_mm_s() / level,
                                std::sqrt(centripetal * arc.radius_mm) / level});
 
     const double level_mm_s = level * own.speed_mm_s;
     const double used = level_mm_s * level_mm_s / arc.radius_mm;
     // At least what was kept; rounding could make it less than that, and 0 is no acceleration.
-    const double left = std::max(plane.tangential_mm_s2(used), tangential_share * most);
+    const double left = std::max(plane.tangential_mm_s2(used), kept);
     own.acceleration_mm_s2 = std::min(most, left) / level;
     return own;
 }
