@@ -1,5 +1,5 @@
-// FILE_DESCRIPTION, FILE_NAME and FILE_SCHEMA. Nothing here refuses a file: an entry that is not as it
-// should be is a warning.
+// FILE_DESCRIPTION, FILE_NAME and FILE_SCHEMA. Nothing here refuses a file: an entry that is not as
+// it should be is a warning.
 
 #include <array>
 

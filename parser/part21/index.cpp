@@ -131,8 +131,8 @@ bool Indexer::header_entry() {
     return true;
 }
 
-// Goes on behind the first ";" that is followed by another entry or the end of the section. A string or
-// comment that is not closed cannot be passed: the whole file may be inside it.
+// Goes on behind the first ";" that is followed by another entry or the end of the section. A
+// string or comment that is not closed cannot be passed: the whole file may be inside it.
 bool Indexer::recover_in_header() {
     constexpr int most = 100;  // a header of which so much cannot be read is none
     if (p_ == end_ || at('\'') || at_comment() || passed_over_++ == most) return false;

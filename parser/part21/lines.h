@@ -1,4 +1,5 @@
-// From a byte offset to line and column, at need: an index of the text is made at the first question.
+// From a byte offset to line and column, at need: an index of the text is made at the first
+// question.
 
 #pragma once
 

@@ -1,5 +1,5 @@
-// What a text that is no STEP file seems to be, from its first bytes, so that the user learns what was
-// opened by mistake.
+// What a text that is no STEP file seems to be, from its first bytes, so that the user learns what
+// was opened by mistake.
 
 #include <algorithm>
 #include <array>
@@ -82,8 +82,8 @@ bool is_binary_stl(std::string_view text) {
     if (text.size() < header + 4) return false;
     std::array<unsigned char, 4> bytes{};
     std::memcpy(bytes.data(), text.data() + header, bytes.size());
-    const std::uint64_t count =
-        bytes[0] | bytes[1] << 8 | bytes[2] << 16 | static_cast<std::uint64_t>(bytes[3]) << 24;
+    std::uint64_t count = 0;
+    for (std::size_t i = bytes.size(); i-- > 0;) count = count << 8 | bytes[i];
     return text.size() == header + 4 + count * triangle;
 }
 

@@ -13,7 +13,8 @@ namespace lyr::part21 {
 
 class Lookup {
 public:
-    // Indexes ids[i] -> instance i. If an id occurs twice: the pair (earlier, later) of the first later.
+    // Indexes ids[i] -> instance i. If an id occurs twice: the pair (earlier, later) of the first
+    // later.
     struct Twice {
         InstanceIndex earlier, later;
     };

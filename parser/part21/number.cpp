@@ -15,8 +15,8 @@ bool is_exponent_letter(char c) {
     return c == 'E' || c == 'e' || c == 'D' || c == 'd';
 }
 
-// Whether a number that from_chars calls out of range is too large (and not too small). The power of
-// ten of its first digit that is not zero decides; a range error is never near 10^0.
+// Whether a number that from_chars calls out of range is too large (and not too small). The power
+// of ten of its first digit that is not zero decides; a range error is never near 10^0.
 bool is_too_large(std::string_view token) {
     const std::size_t letter = token.find_first_of("EeDd");
     const std::string_view mantissa = token.substr(0, letter);

@@ -2,8 +2,8 @@
 //
 // Contract
 //  1. The text is a number token as skip_number() delimits it; these functions take all of it.
-//  2. A real is the nearest double, ties to even. Beyond +-1.797...e308: out of range. Nearer to zero
-//     than the smallest double: zero (or that double, as rounding has it), with the sign.
+//  2. A real is the nearest double, ties to even. Beyond +-1.797...e308: out of range. Nearer to
+//     zero than the smallest double: zero (or that double, as rounding has it), with the sign.
 //  3. "1.", ".5", "+1", "1e5", "1E+5", "1D5" and "1d5" are numbers.
 
 #pragma once

@@ -85,7 +85,8 @@ public:
     std::string_view keyword(KeywordId keyword) const;
 
     // Records. An instance in external mapping, #1=(A(..)B(..)), has several: it is complex. The
-    // order of records is that of the file. (One in external mapping with a single record is simple.)
+    // order of records is that of the file. (One in external mapping with a single record is
+    // simple.)
     bool is_complex(InstanceIndex instance) const;
     std::size_t record_count(InstanceIndex instance) const;
     RecordIndex record(InstanceIndex instance, std::size_t number) const;

@@ -1,7 +1,7 @@
 // What a File owns, and what Values look into: the text and the arrays that index it.
 //
-// Records of the header come first, then those of the instances in the order of the file; the records
-// of instance i are first_record[i] .. first_record[i + 1] - 1.
+// Records of the header come first, then those of the instances in the order of the file; the
+// records of instance i are first_record[i] .. first_record[i + 1] - 1.
 
 #pragma once
 

@@ -19,10 +19,10 @@
 //     for double is zero.
 //  4. as_reference() gives an instance that exists: a name that the file does not define, or that
 //     it takes from another file (REFERENCE section), is an error that says so.
-//  5. as_string() is valid UTF-8 whatever the file holds. The escapes S, P, X, X2 and X4 and doubled
-//     quotes and backslashes are decoded; N and F directives and line breaks are dropped; bytes
-//     beyond ASCII are UTF-8 where they form it, else ISO 8859-1; a lone backslash (Windows paths)
-//     stands for itself.
+//  5. as_string() is valid UTF-8 whatever the file holds. The escapes S, P, X, X2 and X4 and
+//     doubled quotes and backslashes are decoded; N and F directives and line breaks are dropped;
+//     bytes beyond ASCII are UTF-8 where they form it, else ISO 8859-1; a lone backslash (Windows
+//     paths) stands for itself.
 //  6. Keywords and enumerations compare without regard to case; real files differ.
 
 #pragma once

@@ -1,5 +1,5 @@
-// How fast is the reader? Joins STEP files to one exchange structure with ids of their own, then measures
-// indexing, and decoding of every argument, in MB (10^6 bytes) a second on one core.
+// How fast is the reader? Joins STEP files to one exchange structure with ids of their own, then
+// measures indexing, and decoding of every argument, in MB (10^6 bytes) a second on one core.
 //
 //     bench_part21 joined.stp file.step...      writes joined.stp and measures it
 //     bench_part21 joined.stp                   measures it again

@@ -1,4 +1,5 @@
-// Decodes every argument of every instance of a file, for tests that feed the reader whatever there is.
+// Decodes every argument of every instance of a file, for tests that feed the reader whatever there
+// is.
 
 #pragma once
 
