@@ -216,15 +216,17 @@ bool Reader::Implementation::read_end(const BlockHead& head) {
 
 ReadPosition Reader::Implementation::position() const {
     ReadPosition position;
-    if (where_ == Where::before_layers || where_ == Where::behind_layers) return position;
-    position.layer = record_.layer.index;
     if (where_ == Where::in_chunk) {
+        position.layer = record_.layer.index;
         position.chunk = layer_chunks_ - 1;
         position.offset = decoder_offset_ + decoder_.begin_offset();
         position.end = decoder_offset_ + decoder_.end_offset();
-    } else {
+    } else if (where_ == Where::in_layer) {
+        position.layer = record_.layer.index;
         position.offset = layer_head_.offset;
         position.end = layer_head_.offset + block_frame_bytes + layer_head_.length;
+    } else if (where_ == Where::at_end) {
+        position.offset = position.end = blocks_.offset();
     }
     return position;
 }

@@ -50,7 +50,7 @@ struct ReadOptions {
     bool keep_configuration = true;
 };
 
-// Where in the file the operation given out last was.
+// Where in the file the operation given out last was; at the end: the file's end.
 struct ReadPosition {
     std::optional<std::uint32_t> layer;  // from 0
     std::uint32_t chunk = 0;             // of the layer, from 0
