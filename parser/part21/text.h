@@ -4,8 +4,8 @@
 //  1. The result is valid UTF-8 for any bytes.
 //  2. 'a''b' is a'b; \\ is \; \X\E9 is U+00E9; \X2\03C0\X0\ and \X4\0001F600\X0\ are the characters
 //     of these numbers, surrogate pairs in \X2\ joined; \S\i is the byte of i plus 128 in the
-//     alphabet ISO 8859-1 or that of the last \PA\ .. \PI\ (8859-1 to -9) of this string; \N\, \F\
-//     and line breaks leave nothing.
+//     alphabet ISO 8859-1 or that of the last \PA\ .. \PI\ (8859-1 to -9) of this string; \N\ and
+//     \F\ and line breaks leave nothing.
 //  3. Bytes beyond ASCII stand for themselves where they form UTF-8, else for ISO 8859-1.
 //  4. A backslash that starts none of these is a backslash. A \X\, \X2\ or \X4\ whose digits are
 //     missing, too few or no character, or that \X0\ does not end, gives U+FFFD and `malformed`.
