@@ -69,9 +69,9 @@ MonotoneEdges monotone_pieces(const Model& model) {
             const double from = levels.of(turn.z_mm[i]), to = levels.of(turn.z_mm[i + 1]);
             if (from == to) continue;
             const bool rising = from < to;
-            result.pieces.push_back({EdgeId{e}, rising ? turn.t[i] : turn.t[i + 1],
-                                     rising ? turn.t[i + 1] : turn.t[i], std::min(from, to),
-                                     std::max(from, to), rising});
+            const double low = turn.t[i + (rising ? 0 : 1)], high = turn.t[i + (rising ? 1 : 0)];
+            result.pieces.push_back({EdgeId{e}, low, high, std::min(from, to), std::max(from, to),
+                                     rising, evaluate(model.edges[e].curve, (low + high) / 2)});
         }
     }
     return result;

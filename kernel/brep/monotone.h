@@ -23,6 +23,7 @@ struct MonotonePiece {
     double t_bottom, t_top;
     double bottom_mm, top_mm;  // levels
     bool rising;               // the edge, from start to end, goes up here
+    Point3 middle;             // the piece's point half-way between its ends' parameters
 };
 
 struct MonotoneEdges {

@@ -200,7 +200,7 @@ void Cutter::find_crossings(Work& work) const {
         const Edge& edge = model_[piece.edge];
         const double t = parameter_at_height(edge.curve, piece.t_bottom, piece.t_top, work.z_mm);
         const auto index = static_cast<std::uint32_t>(work.crossings.size());
-        work.crossings.push_back({evaluate(edge.curve, t), piece.edge, piece.rising});
+        work.crossings.push_back({evaluate(edge.curve, t), &piece});
         for (std::uint32_t u = use_start_[piece.edge.value]; u < use_start_[piece.edge.value + 1];
              ++u) {
             const bool rises = piece.rising != uses_[u].reversed;
@@ -217,7 +217,9 @@ void Cutter::cut_face(FaceId id, std::span<const Event> events, Work& work) cons
     const SurfaceSection section = section_of(face.surface, face.same_sense, work.z_mm, extent_mm_);
     std::vector<FaceCrossing> crossings;
     for (const Event& event : events) {
-        crossings.push_back({event.crossing, event.enters, work.crossings[event.crossing].point});
+        const Crossing& crossing = work.crossings[event.crossing];
+        crossings.push_back(
+            {event.crossing, event.enters, {crossing.point, crossing.piece->middle}});
     }
     const FaceSpans paired = pair_crossings(section, crossings);
     for (const Span& span : paired.spans) {
@@ -237,7 +239,8 @@ void Cutter::cut_face(FaceId id, std::span<const Event> events, Work& work) cons
         ++work.section.open;
         report(work,
                "the face's boundary is open: edge #" +
-                   std::to_string(model_[work.crossings[c].edge].source) + " has no counterpart",
+                   std::to_string(model_[work.crossings[c].piece->edge].source) +
+                   " has no counterpart",
                face.source, work.crossings[c].point);
     }
     if (paired.forced > 0) {
@@ -281,7 +284,8 @@ void Cutter::add_whole_components(Work& work) const {
             std::equal_range(work.events.begin(), work.events.end(), Event{id, 0, false},
                              [](const Event& a, const Event& b) { return a.face < b.face; });
         for (auto event = first; event != last; ++event) {
-            const Place place = locate(section, work.crossings[event->crossing].point);
+            const Crossing& crossing = work.crossings[event->crossing];
+            const Place place = locate(section, {crossing.point, crossing.piece->middle});
             crossed[static_cast<std::size_t>(place.component)] = true;
         }
         for (std::size_t c = 0; c < crossed.size(); ++c) {
@@ -334,7 +338,7 @@ void Cutter::stitch(Work& work) const {
                 work.spans[next].solid != solid) {
                 ++work.section.open;
                 report(work, "the contour does not close: the edge has no face on its other side",
-                       model_[work.crossings[span.leave].edge].source,
+                       model_[work.crossings[span.leave].piece->edge].source,
                        work.crossings[span.leave].point);
                 break;
             }

@@ -52,8 +52,7 @@ public:
 private:
     struct Crossing {
         Point3 point;
-        EdgeId edge;
-        bool rising;
+        const MonotonePiece* piece;
     };
     struct Event {
         FaceId face;

@@ -75,7 +75,7 @@ FaceSpans pair_crossings(const SurfaceSection& section, std::span<const FaceCros
     std::vector<Event> events;
     events.reserve(crossings.size());
     for (const FaceCrossing& c : crossings) {
-        events.push_back({locate(section, c.point), c.crossing, c.enters});
+        events.push_back({locate(section, c.at), c.crossing, c.enters});
     }
     std::sort(events.begin(), events.end());
     FaceSpans result;

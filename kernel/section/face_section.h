@@ -23,7 +23,7 @@ namespace lyr {
 struct FaceCrossing {
     std::uint32_t crossing;  // index of the plane's crossing
     bool enters;
-    Point3 point;
+    CrossingPoint at;
 };
 
 struct Span {

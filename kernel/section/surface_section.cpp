@@ -78,26 +78,26 @@ SurfaceSection section_of_sphere(const Sphere& sphere, bool same_sense, double z
 
 // Locating a point: which component, and where along it.
 
-Place locate(const LineSection& line, const Point3& p) {
-    return {0, line.direction.dot(flat(p))};
+Place locate(const LineSection& line, const CrossingPoint& crossing) {
+    return {0, line.direction.dot(flat(crossing.point))};
 }
 
-Place locate(const GeneratorSection& lines, const Point3& p) {
-    const Vector2 offset = flat(p) - lines.origin;
-    const bool left = cross(lines.axis, offset) > 0;
-    return {left ? 0 : 1, (left ? -1 : 1) * lines.sense * lines.axis.dot(offset)};
+Place locate(const GeneratorSection& lines, const CrossingPoint& crossing) {
+    const bool left = cross(lines.axis, flat(crossing.on_piece) - lines.origin) > 0;
+    const double along = lines.axis.dot(flat(crossing.point) - lines.origin);
+    return {left ? 0 : 1, (left ? -1 : 1) * lines.sense * along};
 }
 
-Place locate(const CircleSection& circles, const Point3& p) {
-    const Vector2 offset = flat(p) - circles.centre;
-    const int component = circles.count == 2 && offset.norm() < circles.border_mm ? 1 : 0;
+Place locate(const CircleSection& circles, const CrossingPoint& crossing) {
+    const double out = (flat(crossing.on_piece) - circles.centre).norm();
+    const std::size_t component = circles.count == 2 && out < circles.border_mm ? 1 : 0;
+    const Vector2 offset = flat(crossing.point) - circles.centre;
     const double angle = std::atan2(offset.y(), offset.x());
-    return {component,
-            circles.counter_clockwise[static_cast<std::size_t>(component)] ? angle : -angle};
+    return {static_cast<int>(component), circles.counter_clockwise[component] ? angle : -angle};
 }
 
-Place locate(const EllipseSection& ellipse, const Point3& p) {
-    const Vector3 offset = p - ellipse.on_axis;
+Place locate(const EllipseSection& ellipse, const CrossingPoint& crossing) {
+    const Vector3 offset = crossing.point - ellipse.on_axis;
     const double angle = std::atan2(flat(offset).dot(ellipse.minor), offset.dot(ellipse.across));
     return {0, ellipse.sense * angle};
 }
@@ -106,14 +106,14 @@ double cone_angle(const ConeSection& cone, double key) {
     return cone.middle_rad + cone.sense * (cone.height_mm < 0 ? -key : key);
 }
 
-Place locate(const ConeSection& cone, const Point3& p) {
-    const Vector3 offset = p - cone.apex;
+Place locate(const ConeSection& cone, const CrossingPoint& crossing) {
+    const Vector3 offset = crossing.point - cone.apex;
     const double angle = std::atan2(offset.dot(cone.basis.side), offset.dot(cone.basis.across));
     const double from_middle = std::remainder(angle - cone.middle_rad, full_turn_rad);
     return {0, cone.sense * (cone.height_mm < 0 ? -from_middle : from_middle)};
 }
 
-Place locate(const TouchSection&, const Point3&) {
+Place locate(const TouchSection&, const CrossingPoint&) {
     return {};
 }
 
@@ -237,8 +237,8 @@ SurfaceSection section_of(const Surface& surface, bool same_sense, double z_mm, 
     return std::visit(Visitor{same_sense, z_mm, extent_mm}, surface);
 }
 
-Place locate(const SurfaceSection& section, const Point3& point) {
-    return std::visit([&](const auto& s) { return locate(s, point); }, section);
+Place locate(const SurfaceSection& section, const CrossingPoint& crossing) {
+    return std::visit([&](const auto& s) { return locate(s, crossing); }, section);
 }
 
 int component_count(const SurfaceSection& section) {

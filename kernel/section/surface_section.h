@@ -3,8 +3,9 @@
 //
 // Contract
 //  1. The direction of rising key is z x n, n the outward normal: along it the solid is on the left.
-//  2. locate(p) names the component that a point of the section lies on and its key there. It needs no
-//     tolerance: where two components come together, the side of the symmetry line decides.
+//  2. locate() names the component that a crossing lies on and its key there. It needs no tolerance: where two
+//     components come together at a level line of the surface (the top of a lying cylinder, of an upright torus'
+//     tube), the side on which the crossing's whole monotone piece of edge lies decides.
 //  3. A closed component repeats after period(); the key of a point is unique within a period.
 //  4. at(component, key) is on surface and plane (to round-off), with the tangent of rule 1.
 //  5. trace() appends segments from `start` to `end` (points of the component at these keys, up to the model's
@@ -107,7 +108,13 @@ using SurfaceSection = std::variant<LineSection, GeneratorSection, CircleSection
 // `extent_mm`: how far from its origin the surface is used; a lean below resolution_mm over that is none.
 SurfaceSection section_of(const Surface& surface, bool same_sense, double z_mm, double extent_mm);
 
-Place locate(const SurfaceSection& section, const Point3& point);
+// A crossing of the section with an edge.
+struct CrossingPoint {
+    Point3 point;
+    Point3 on_piece;  // any other point of the same monotone piece of the edge
+};
+
+Place locate(const SurfaceSection& section, const CrossingPoint& crossing);
 int component_count(const SurfaceSection& section);
 // 0 for an open component.
 double period(const SurfaceSection& section);
@@ -122,7 +129,7 @@ Contour whole_component(const SurfaceSection& section, int component, const Tole
 
 // For section_of(): the torus, in torus_section.cpp.
 SurfaceSection torus_section(const Torus& torus, bool same_sense, double z_mm, double extent_mm);
-Place locate(const TorusSection& section, const Point3& point);
+Place locate(const TorusSection& section, const CrossingPoint& crossing);
 CurvePoint at(const TorusSection& section, const Place& place);
 LeaningBasis leaning_basis(const Vector3& axis);
 

@@ -102,8 +102,8 @@ SurfaceSection torus_section(const Torus& torus, bool same_sense, double z_mm, d
     return section;
 }
 
-Place locate(const TorusSection& torus, const Point3& point) {
-    const Vector3 offset = point - torus.centre;
+Place locate(const TorusSection& torus, const CrossingPoint& crossing) {
+    const Vector3 offset = crossing.point - torus.centre;
     const double x = offset.dot(torus.basis.across), y = offset.dot(torus.basis.side);
     const double v = std::atan2(offset.dot(torus.basis.axis), std::hypot(x, y) - torus.major_mm);
     const bool positive = y > 0;

@@ -155,6 +155,35 @@ inline Model frustum(double r0, double r1, double h, Side side) {
     return b.finish();
 }
 
+// The upper half of a cylinder lying along y: its side face begins and ends at level tangents if it is stood on
+// an edge.
+inline Model half_round(double radius, double length) {
+    Builder b;
+    VertexId v[2][2];
+    EdgeId arc[2], floor[2], side[2];
+    Frame frame;
+    frame.z = -Vector3::UnitY();
+    frame.y = Vector3::UnitZ();
+    for (int e : {0, 1}) {
+        const double y = (e - 0.5) * length;
+        frame.origin = {0, y, 0};
+        v[e][0] = b.vertex(radius, y, 0);
+        v[e][1] = b.vertex(-radius, y, 0);
+        arc[e] = b.edge(Circle{frame, radius}, v[e][0], v[e][1]);
+        floor[e] = b.line(v[e][1], v[e][0]);
+    }
+    for (int s : {0, 1}) side[s] = b.line(v[0][s], v[1][s]);
+    frame.origin = {0, -length / 2, 0};
+    b.face(Cylinder{frame, radius}, true, {{{side[0]}, {arc[1]}, {side[1], true}, {arc[0], true}}});
+    b.face(Plane{Builder::looking({0, 0, 0}, -Vector3::UnitZ())}, true,
+           {{{side[1]}, {floor[1]}, {side[0], true}, {floor[0], true}}});
+    b.face(Plane{Builder::looking({0, -length / 2, 0}, -Vector3::UnitY())}, true,
+           {{{arc[0]}, {floor[0]}}});
+    b.face(Plane{Builder::looking({0, length / 2, 0}, Vector3::UnitY())}, true,
+           {{{floor[1], true}, {arc[1], true}}});
+    return b.finish();
+}
+
 inline Model cone_with_apex(double radius, double h, bool seam) {
     Builder b;
     const double z0 = -h / 2;

@@ -41,6 +41,7 @@ std::vector<Case> solids() {
             {"cylinder, seam", frustum(4, 4, 9, Side::seam), pi * 144},
             {"cylinder, halves", frustum(4, 4, 9, Side::halves), pi * 144},
             {"cylinder, two loops", frustum(4, 4, 9, Side::two_loops), pi * 144},
+            {"half round", half_round(3, 8), pi * 36},
             {"frustum, seam", frustum(2, 5, 6, Side::seam), pi * 6 / 3 * (4 + 10 + 25)},
             {"frustum, halves", frustum(5, 2, 6, Side::halves), pi * 6 / 3 * (4 + 10 + 25)},
             {"frustum, two loops", frustum(5, 2, 6, Side::two_loops), pi * 6 / 3 * (4 + 10 + 25)},
@@ -192,6 +193,27 @@ TEST_CASE("cutter: no height fails, also where a plane touches or holds faces an
                     CHECK(std::isfinite(area_of(section)));
                 }
             }
+        }
+    }
+}
+
+TEST_CASE(
+    "cutter: a side face that begins at the level tangent the plane touches is cut on its own "
+    "side") {
+    // Round-off puts the crossings of the two end arcs on different sides of the tangent.
+    for (const double turn : {pi / 2, -pi / 2}) {
+        Model model = transformed(half_round(0.625, 1.5),
+                                  Eigen::Affine3d(Eigen::AngleAxisd(turn, Vector3::UnitY())));
+        for (Edge& edge : model.edges) {
+            auto* circle = std::get_if<Circle>(&edge.curve);
+            if (circle && edge.source % 2) circle->frame.x += 1e-8 * circle->frame.y;
+        }
+        const Cutter cutter(model, {});
+        for (const double z : {-0.625, -0.625 + 1e-15, 0.625, 0.625 - 1e-15, 0.0}) {
+            const Section section = cutter.cut(z);
+            CHECK(section.open == 0);
+            CHECK(section.diagnostics.empty());
+            CHECK(area_of(section) >= -1e-9);
         }
     }
 }

@@ -7,11 +7,12 @@ using namespace lyr;
 namespace {
 
 FaceCrossing on_line(std::uint32_t crossing, bool enters, double x) {
-    return {crossing, enters, {x, 0, 0}};
+    return {crossing, enters, {{x, 0, 0}, {x, 0, 0}}};
 }
 
 FaceCrossing on_circle(std::uint32_t crossing, bool enters, double angle) {
-    return {crossing, enters, {std::cos(angle), std::sin(angle), 0}};
+    const Point3 point(std::cos(angle), std::sin(angle), 0);
+    return {crossing, enters, {point, point}};
 }
 
 const SurfaceSection line = LineSection{{1, 0}};
