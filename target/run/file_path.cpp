@@ -154,12 +154,12 @@ AxisValues FilePath::position(const format::Point& point) const {
 }
 
 void FilePath::draw_back(double depth_mm) {
-    AxisValues to_mm = at_mm_;
-    to_mm[axis_e] -= depth_mm - drawn_back_mm_;
+    const double feed_mm = drawn_back_mm_ - depth_mm;
     drawn_back_mm_ = depth_mm;
-    if (to_mm == at_mm_) return;
+    if (feed_mm == 0) return;
     PathCurve curve;
-    curve.to_mm = to_mm;
+    curve.to_mm = at_mm_;
+    curve.to_mm[axis_e] = fed_mm(feed_mm);
     append(curve);
 }
 
@@ -170,8 +170,7 @@ void FilePath::straight(const AxisValues& to_mm, bool extrudes) {
     curve.to_mm = to_mm;
     const double way_mm = length_mm(curve);
     (extrudes ? totals_.extruded_mm : totals_.travelled_mm) += way_mm;
-    if (extrudes) curve.to_mm[axis_e] += filament_mm(way_mm);
-    if (extrudes) totals_.filament_mm += filament_mm(way_mm);
+    if (extrudes) extrude(curve, way_mm);
     append(curve);
 }
 
@@ -180,8 +179,7 @@ void FilePath::turn(PathCurve curve, const format::Point& to) {
     curve.to_mm = position(to);
     const double way_mm = length_mm(curve);
     totals_.extruded_mm += way_mm;
-    totals_.filament_mm += filament_mm(way_mm);
-    curve.to_mm[axis_e] += filament_mm(way_mm);
+    extrude(curve, way_mm);
     append(curve);
 }
 
@@ -194,8 +192,18 @@ void FilePath::append(const PathCurve& curve) {
     ++totals_.motions;
 }
 
-double FilePath::filament_mm(double length_mm) const {
-    return length_mm * format::cross_section_mm2(reader_.path()) / filament_area_mm2_;
+void FilePath::extrude(PathCurve& curve, double way_mm) {
+    const double filament_mm =
+        way_mm * format::cross_section_mm2(reader_.path()) / filament_area_mm2_;
+    totals_.filament_mm += filament_mm;
+    curve.to_mm[axis_e] = fed_mm(filament_mm);
+}
+
+double FilePath::fed_mm(double feed_mm) {
+    const double due_mm = feed_mm - feed_error_mm_;
+    const double sum_mm = at_mm_[axis_e] + due_mm;
+    feed_error_mm_ = (sum_mm - at_mm_[axis_e]) - due_mm;
+    return sum_mm;
 }
 
 }  // namespace lyr::run

