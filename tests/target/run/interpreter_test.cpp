@@ -127,6 +127,26 @@ TEST_CASE(
     CHECK(per_mm_after / per_mm_before == doctest::Approx(area_mm2(0.6) / area_mm2(0.45)));
 }
 
+TEST_CASE("file path 2: the filament of very many motions adds up without drifting") {
+    const Drawing zigzag = [](const Pen& pen) {
+        pen.path();
+        pen.travel(0, 0);
+        for (int i = 0; i < 60'000; ++i) pen.line(i % 2 ? 0.0 : 0.137, 0.0);
+    };
+    FilePath path(reader_of(write_print("drift", {zigzag, zigzag, zigzag})), {}, diameter_mm);
+    PathCurve curve;
+    for (bool more = true; more;) {
+        const Result<bool> next = path.next(curve);
+        REQUIRE(next.ok());
+        more = *next;
+    }
+    const long double area_mm2 =
+        (0.45L - 0.2L) * 0.2L + std::numbers::pi_v<long double> / 4 * 0.2L * 0.2L;
+    const long double filament_mm2 = std::numbers::pi_v<long double> / 4 * 1.75L * 1.75L;
+    const auto expected = static_cast<double>(180'000 * 0.137L * area_mm2 / filament_mm2);
+    CHECK(std::abs(curve.to_mm[3] - expected) < 1e-11 * expected);
+}
+
 TEST_CASE("interpreter: a print that begins retracted does not feed the retraction first") {
     const std::string file =
         write_print("retracted", {draw_square, draw_square}, {},

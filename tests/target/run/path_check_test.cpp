@@ -235,6 +235,35 @@ TEST_CASE("path check 3: simultaneous steps may come in either order") {
     CHECK(check(curves, steps).worst_steps < 0.501);
 }
 
+TEST_CASE(
+    "path check 1: a step back through the same middle belongs to the crossing on the way back") {
+    // Up to y = 2.005 exactly beyond a middle, a whole turn, and back: the position above is held for long.
+    const std::vector<PathCurve> curves{line(origin_mm, {0, 2.008, 0, 0}),
+                                        arc({0, 2.008, 0, 0}, -3, 2.008, 2 * pi, 0, 0),
+                                        arc({0, 2.008, 0, 0}, -2, 2.008, -2 * pi, 0, 0)};
+    CHECK(check(curves, perfect_steps(curves)).worst_steps < 0.501);
+}
+
+TEST_CASE("path check 1: a step that is almost due is measured where it is due") {
+    // x and e pass their middles a thousandth of a step apart, all the way.
+    const double apart_mm = 0.001 / 96;
+    const std::vector<PathCurve> curves{
+        line(origin_mm, {0.3, 0, 0, apart_mm}),
+        line({0.3, 0, 0, apart_mm}, {4.3, 0, 0, apart_mm + 80 * 4 / 96.0})};
+    std::vector<TestStep> steps;
+    for (int i = 0; i < 24; ++i) steps.push_back({0, true});
+    for (int i = 0; i < 320; ++i) {
+        steps.push_back({3, true});
+        steps.push_back({0, true});
+    }
+    CHECK(check(curves, steps).worst_steps < 0.5 + 0.0011);
+    // In the other order they are off by that thousandth, and no more.
+    for (std::size_t i = 24; i < steps.size(); i += 2) std::swap(steps[i], steps[i + 1]);
+    const double swapped = check(curves, steps).worst_steps;
+    CHECK(swapped > 0.5 + 0.0009);
+    CHECK(swapped < 0.5 + 0.0011);
+}
+
 TEST_CASE("path check: an error of the file ends it and is kept") {
     PathCheck path(steps_per_mm, origin_mm, [](PathCurve&) -> Result<bool> {
         return Diagnostic{Severity::error, ExitStatus::input, "cut short", {}};
