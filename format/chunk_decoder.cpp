@@ -2,6 +2,7 @@
 
 #include "format/chunk_decoder.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "format/layout.h"
@@ -255,7 +256,9 @@ bool ChunkDecoder::decode_hatch(Operation& out) {
     if (flags & ~hatch_bit::all) return fail("a hatch has a flag that is not known");
     if (!has_path_) return fail("extrusion before a path begins");
     if (!has_grid_) return fail("a hatch without a grid");
-    if (beyond(row_, largest_row)) return fail("a hatch row is out of range");
+    if (beyond(row_, largest_row) || rows_left_ > static_cast<std::uint64_t>(largest_row))
+        return fail("a hatch row is out of range");
+    group_rows_left_ = 0;
     one_way_ = (flags & hatch_bit::one_way) != 0;
     forward_ = (flags & hatch_bit::backward) == 0;
     stage_ = HatchStage::row;
@@ -271,29 +274,45 @@ bool ChunkDecoder::begin_hatch_row() {
         stage_ = HatchStage::none;
         return false;
     }
-    const std::uint64_t head = cursor_.varint();
-    linked_ = (head & 1) != 0;
-    intervals_ = head >> 1;
-    // Each interval has two values of a byte at least.
-    if (cursor_.bad() || intervals_ > cursor_.left() / 2) return fail("a hatch row is cut short");
+    if (group_rows_left_ == 0 && !begin_hatch_group()) return false;
+    const std::optional<std::int64_t> offset = grid_.row(row_);
+    if (!offset) return fail("a hatch row is out of range");
+    row_offset_ = *offset;
     predictor_.begin_row(intervals_);
+    linked_ = group_linked_;
     ends_left_ = 2 * intervals_;
-    if (intervals_ > 0) {
-        const std::optional<std::int64_t> offset = grid_.row(row_);
-        if (!offset) return fail("a hatch row is out of range");
-        row_offset_ = *offset;
-        stage_ = HatchStage::start;
-    } else {
-        end_hatch_row();
-    }
+    stage_ = HatchStage::start;
     return true;
 }
 
-void ChunkDecoder::end_hatch_row() {
+// False: the group has empty rows only, which are passed over here, or an error.
+bool ChunkDecoder::begin_hatch_group() {
+    const std::uint64_t head = cursor_.varint();
+    group_rows_left_ = cursor_.varint();
+    group_linked_ = (head & 1) != 0;
+    intervals_ = head >> 1;
+    if (group_rows_left_ == 0 || group_rows_left_ > rows_left_)
+        return fail("a hatch has another number of rows than it says");
+    if (intervals_ == 0) {
+        // The predictor looks back two rows.
+        for (std::uint64_t i = 0; i < std::min<std::uint64_t>(group_rows_left_, 2); ++i)
+            predictor_.begin_row(0);
+        pass_hatch_rows(group_rows_left_);
+        return false;
+    }
+    // Each interval has two values of a byte at least.
+    const std::uint64_t most = cursor_.left() / 2;
+    if (intervals_ > most || group_rows_left_ > most / intervals_)
+        return fail("a hatch row is cut short");
+    return true;
+}
+
+void ChunkDecoder::pass_hatch_rows(std::uint64_t rows) {
     stage_ = HatchStage::row;
-    --rows_left_;
-    ++row_;
-    if (!one_way_) forward_ = !forward_;
+    rows_left_ -= rows;
+    group_rows_left_ -= rows;
+    row_ += static_cast<std::int64_t>(rows);
+    if (!one_way_ && rows % 2 == 1) forward_ = !forward_;
 }
 
 bool ChunkDecoder::hatch_point(Point& point) {
@@ -309,8 +328,7 @@ bool ChunkDecoder::hatch_point(Point& point) {
 }
 
 bool ChunkDecoder::decode_hatch_step(Operation& out) {
-    if (stage_ == HatchStage::row && (!begin_hatch_row() || stage_ == HatchStage::row))
-        return false;
+    if (stage_ == HatchStage::row && !begin_hatch_row()) return false;
     const Point from = at_;
     Point to;
     if (!hatch_point(to)) return false;
@@ -326,7 +344,7 @@ bool ChunkDecoder::decode_hatch_step(Operation& out) {
         return true;
     }
     stage_ = HatchStage::start;
-    if (ends_left_ == 0) end_hatch_row();
+    if (ends_left_ == 0) pass_hatch_rows(1);
     if (from == to) return false;
     out = Line{from, to, true};
     return true;

@@ -55,7 +55,8 @@ private:
     bool decode_hatch(Operation& out);
     bool decode_hatch_step(Operation& out);
     bool begin_hatch_row();
-    void end_hatch_row();
+    bool begin_hatch_group();
+    void pass_hatch_rows(std::uint64_t rows);
     bool hatch_point(Point& point);
 
     Point step(bool with_z);
@@ -79,9 +80,9 @@ private:
     bool has_grid_ = false;
     RowPredictor predictor_;
     HatchStage stage_ = HatchStage::none;
-    bool one_way_ = false, forward_ = true, linked_ = false;
+    bool one_way_ = false, forward_ = true, linked_ = false, group_linked_ = false;
     std::int64_t row_ = 0, row_offset_ = 0;
-    std::uint64_t rows_left_ = 0, intervals_ = 0, ends_left_ = 0;
+    std::uint64_t rows_left_ = 0, group_rows_left_ = 0, intervals_ = 0, ends_left_ = 0;
 };
 
 }  // namespace lyr::format

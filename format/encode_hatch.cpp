@@ -12,11 +12,12 @@ namespace {
 // Leaves room for the opcodes in front of and behind the rows.
 constexpr std::size_t most_rows_bytes = longest_buffered_payload - 128;
 constexpr std::size_t hatch_head_bytes = 3 + 2 * longest_varint;
+constexpr std::size_t most_group_head_bytes = 2 * longest_varint;
 // The difference of two ends on a grid takes at most so many bytes.
 constexpr std::size_t most_end_bytes = 6;
 // Rows with more are written in pieces.
 constexpr std::size_t most_piece_ends = 8192;
-static_assert(most_piece_ends * most_end_bytes + longest_varint < most_rows_bytes);
+static_assert(most_piece_ends * most_end_bytes + 2 * most_group_head_bytes < most_rows_bytes);
 // A caller's unit vector is one by its own rounding.
 constexpr double unit_slack = 1e-6;
 // Runs whose rows coincide up to this, in quanta, share a grid: nothing against the rounding of a
@@ -126,33 +127,47 @@ bool LayerEncoder::Implementation::round_row(const HatchRow& row, const HatchInt
 // The ends [begin, end) in the order of the way along the row.
 void LayerEncoder::Implementation::put_row(const Row& row, std::size_t begin, std::size_t end) {
     if (hatch_open_) {
-        const auto empty_rows = static_cast<std::size_t>(row.number - hatch_next_row_);
-        const std::size_t most = empty_rows + longest_varint + (end - begin) * most_end_bytes;
-        if (begin > 0 || hatch_rows_.size() + most > most_rows_bytes) close_hatch();
+        const std::size_t so_far = hatch_groups_.size() + group_.ends.size();
+        const std::size_t most = 2 * most_group_head_bytes + (end - begin) * most_end_bytes;
+        if (begin > 0 || so_far + most > most_rows_bytes) close_hatch();
     }
     if (!hatch_open_) open_hatch(row);
-    for (; hatch_next_row_ < row.number; ++hatch_next_row_) {
-        put_byte(hatch_rows_, 0);
-        predictor_.begin_row(0);
-    }
+    for (; hatch_next_row_ < row.number; ++hatch_next_row_) begin_hatch_row(0);
     const std::uint64_t count = end - begin;
-    put_varint(hatch_rows_, count | (row.linked && begin == 0 ? 1 : 0));
-    predictor_.begin_row(count / 2);
+    begin_hatch_row(count | (row.linked && begin == 0 ? 1 : 0));
     for (std::uint64_t i = 0; i < count; ++i) {
         const std::uint64_t j = row.forward ? i : count - 1 - i;
         const std::size_t from_first = begin + static_cast<std::size_t>(i);
         const std::int64_t value =
             row.forward ? row.ends[from_first] : row.ends[row.ends.size() - 1 - from_first];
-        put_signed(hatch_rows_, value - predictor_.predict(j));
+        put_signed(group_.ends, value - predictor_.predict(j));
         predictor_.note(j, value);
     }
     ++hatch_next_row_;
     count_row(row, begin, end);
 }
 
+// Rows with the same head share it.
+void LayerEncoder::Implementation::begin_hatch_row(std::uint64_t head) {
+    if (group_.rows == 0 || group_.head != head) close_group();
+    group_.head = head;
+    ++group_.rows;
+    predictor_.begin_row(head / 2);
+}
+
+void LayerEncoder::Implementation::close_group() {
+    if (group_.rows > 0) {
+        put_varint(hatch_groups_, group_.head);
+        put_varint(hatch_groups_, group_.rows);
+        hatch_groups_.insert(hatch_groups_.end(), group_.ends.begin(), group_.ends.end());
+    }
+    group_.rows = 0;
+    group_.ends.clear();
+}
+
 void LayerEncoder::Implementation::open_hatch(const Row& row) {
     hatch_open_ = true;
-    hatch_rows_.clear();
+    hatch_groups_.clear();
     hatch_first_row_ = hatch_next_row_ = row.number;
     hatch_backward_ = !row.forward;
     predictor_.begin_run();
@@ -161,13 +176,14 @@ void LayerEncoder::Implementation::open_hatch(const Row& row) {
 void LayerEncoder::Implementation::close_hatch() {
     if (!hatch_open_) return;
     hatch_open_ = false;
-    begin_operation(hatch_head_bytes + hatch_rows_.size());
+    close_group();
+    begin_operation(hatch_head_bytes + hatch_groups_.size());
     put_byte(out_.bytes, opcode::hatch);
     put_byte(out_.bytes,
              (one_way_ ? hatch_bit::one_way : 0) | (hatch_backward_ ? hatch_bit::backward : 0));
     put_signed(out_.bytes, hatch_first_row_);
     put_varint(out_.bytes, static_cast<std::uint64_t>(hatch_next_row_ - hatch_first_row_));
-    out_.bytes.insert(out_.bytes.end(), hatch_rows_.begin(), hatch_rows_.end());
+    out_.bytes.insert(out_.bytes.end(), hatch_groups_.begin(), hatch_groups_.end());
 }
 
 void LayerEncoder::Implementation::count_row(const Row& row, std::size_t begin, std::size_t end) {

@@ -45,6 +45,12 @@ private:
         std::vector<std::int64_t> ends;  // ascending along the direction
     };
 
+    // Hatch rows of as many intervals, reached in the same way.
+    struct Group {
+        std::uint64_t head = 0, rows = 0;
+        Bytes ends;
+    };
+
     // Keeps the first mistake.
     void mistake(const std::string& what);
     bool has_path();
@@ -70,6 +76,8 @@ private:
     std::int64_t select_grid(const Grid& grid);
     bool round_row(const HatchRow& row, const HatchInterval* intervals, Row& out);
     void put_row(const Row& row, std::size_t begin, std::size_t end);
+    void begin_hatch_row(std::uint64_t head);
+    void close_group();
     void open_hatch(const Row& row);
     void close_hatch();
     void count_row(const Row& row, std::size_t begin, std::size_t end);
@@ -91,8 +99,9 @@ private:
     std::optional<Grid> grid_;
     bool one_way_ = false;
     RowPredictor predictor_;
-    // The hatch operation being written: its rows, from `hatch_first_row_` on.
-    Bytes hatch_rows_;
+    // The hatch operation being written: its rows from `hatch_first_row_` on, in groups.
+    Bytes hatch_groups_;
+    Group group_;
     std::int64_t hatch_first_row_ = 0, hatch_next_row_ = 0;
     bool hatch_backward_ = false, hatch_open_ = false;
 };

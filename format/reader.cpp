@@ -186,7 +186,8 @@ bool Reader::Implementation::read_index(const BlockHead& head) {
     const auto check = [&](std::span<const std::byte> piece) { crc = crc32c(piece, crc); };
     if (!blocks_.stream(head, check)) return fail_block(head);
     if (!layer_is_whole(head)) return false;
-    const bool right = crc == offsets_crc_ && head.length == layers_ * index_entry_bytes;
+    const bool right =
+        crc == offsets_crc_ && head.length == std::uint64_t{layers_} * index_entry_bytes;
     if (!right && !sought_) return fail("the index does not lead to the layers", head.offset);
     index_offset_ = head.offset;
     where_ = Where::behind_layers;

@@ -10,7 +10,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 
 namespace lyr::format {
 
@@ -22,8 +21,10 @@ public:
     void begin_run() { counts_ = {}, last_ = 0; }
 
     void begin_row(std::uint64_t intervals) {
-        std::swap(rows_[1], rows_[2]);
-        std::swap(rows_[0], rows_[1]);
+        const std::uint8_t oldest = two_before_;
+        two_before_ = before_;
+        before_ = now_;
+        now_ = oldest;
         counts_ = {intervals, counts_[0], counts_[1]};
         const bool known = intervals <= most_intervals && counts_[1] == intervals;
         order_ = !known ? 0 : counts_[2] == intervals ? 2 : 1;
@@ -33,18 +34,18 @@ public:
     std::int64_t predict(std::uint64_t j) const {
         if (order_ == 0) return last_;
         const auto at = static_cast<std::size_t>(j);
-        return order_ == 1 ? rows_[1][at] : 2 * rows_[1][at] - rows_[2][at];
+        return order_ == 1 ? rows_[before_][at] : 2 * rows_[before_][at] - rows_[two_before_][at];
     }
 
     void note(std::uint64_t j, std::int64_t value) {
-        if (j < 2 * most_intervals) rows_[0][static_cast<std::size_t>(j)] = value;
+        if (j < 2 * most_intervals) rows_[now_][static_cast<std::size_t>(j)] = value;
         last_ = value;
     }
 
 private:
-    // This row, the one before and the one before that; and their numbers of intervals.
     std::array<std::array<std::int64_t, 2 * most_intervals>, 3> rows_{};
-    std::array<std::uint64_t, 3> counts_{};
+    std::uint8_t now_ = 0, before_ = 1, two_before_ = 2;  // which of them is this row, and so on
+    std::array<std::uint64_t, 3> counts_{};               // intervals of this row and those before
     std::int64_t last_ = 0;
     int order_ = 0;
 };

@@ -19,7 +19,7 @@ bool Reader::Implementation::find_index(std::uint64_t file_bytes, BlockHead& hea
     if (!blocks_.seek(get_u64(bytes->data() + 28))) return fail_fault(blocks_.offset());
     const std::optional<BlockHead> index = blocks_.head();
     if (!index) return fail_fault(blocks_.offset());
-    if (!is(*index, BlockType::index) || index->length != layers * index_entry_bytes)
+    if (!is(*index, BlockType::index) || index->length != std::uint64_t{layers} * index_entry_bytes)
         return fail("the file has no index", index->offset);
     head = *index;
     return true;
