@@ -193,7 +193,7 @@ inline Real allowed_deviation(const Run& run, std::size_t motor) {
 
 // The largest error of any step's time against a bisection of the ideal, in ns.
 inline Real largest_time_error_ns(const Run& run, std::size_t motor) {
-    constexpr int halvings = 80;
+    constexpr Real close_ns = 2, fine_ns = 1e-4L;
     Ideal ideal(run);
     const std::vector<MotorStep> steps = steps_of(run, motor);
     Real worst = 0;
@@ -208,12 +208,14 @@ inline Real largest_time_error_ns(const Run& run, std::size_t motor) {
         const auto passed = [&](Real time_ns) {
             return (ideal.steps_at_ns(motor, time_ns) - middle) * steps[i].direction >= 0;
         };
+        // Mostly the answer is near by.
+        if (now - close_ns > low && !passed(now - close_ns)) low = now - close_ns;
+        if (now + close_ns < high && passed(now + close_ns)) high = now + close_ns;
         if (passed(low) || !passed(high)) {
             // Steps closer together than times are rounded to.
             worst = std::max(worst, after - before);
         } else {
-            for (int k = 0; k < halvings && high - low > 1e-5L; ++k)
-                (passed((low + high) / 2) ? high : low) = (low + high) / 2;
+            while (high - low > fine_ns) (passed((low + high) / 2) ? high : low) = (low + high) / 2;
             worst = std::max(worst, std::abs(high - now));
         }
         count += steps[i].direction;
@@ -232,7 +234,7 @@ inline std::vector<Move> random_moves(std::mt19937& random, std::size_t count, d
         // Not to wander out of the machine.
         if (std::abs(to.x) > 200) to.x = 200 * even(random);
         if (std::abs(to.y) > 200) to.y = 200 * even(random);
-        if (with_z_and_e && i % 7 == 0) to.z = std::abs(10 * even(random));
+        if (with_z_and_e && i % 7 == 0) to.z = std::min(size_mm, 10.0) * std::abs(even(random));
         const double advance_mm = with_z_and_e ? size_mm * (0.03 + 0.02 * even(random)) : 0;
         Move move;
         if (i % 3 == 0)
