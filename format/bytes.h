@@ -50,10 +50,18 @@ public:
         return static_cast<std::uint8_t>(*at_++);
     }
 
+    // Nearly all numbers have one byte or two.
     std::uint64_t varint() {
-        if (at_ != end_ && static_cast<std::uint8_t>(*at_) < 0x80)
-            return static_cast<std::uint64_t>(*at_++);
-        return long_varint();
+        if (end_ - at_ < 2) return long_varint();
+        const auto first = static_cast<std::uint64_t>(at_[0]);
+        const auto second = static_cast<std::uint64_t>(at_[1]);
+        if (first < 0x80) {
+            ++at_;
+            return first;
+        }
+        if (second >= 0x80) return long_varint();
+        at_ += 2;
+        return (first & 0x7f) | second << 7;
     }
 
     std::int64_t signed_varint() { return unzigzag(varint()); }

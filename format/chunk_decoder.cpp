@@ -3,7 +3,6 @@
 #include "format/chunk_decoder.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "format/layout.h"
 
@@ -211,10 +210,10 @@ bool ChunkDecoder::decode_arc(bool with_z, Operation& out) {
     const std::int64_t sagitta = cursor_.signed_varint();
     if (!has_path_) return fail("extrusion before a path begins");
     if (!in_range(to)) return false;
-    const double chord =
-        std::hypot(static_cast<double>(to.x - from.x), static_cast<double>(to.y - from.y));
-    const double rise = std::abs(static_cast<double>(sagitta));
-    if (sagitta == 0 || chord == 0 || rise > most_sagitta_per_chord * chord)
+    const auto dx = static_cast<double>(to.x - from.x), dy = static_cast<double>(to.y - from.y);
+    const auto rise = static_cast<double>(sagitta);
+    const double most = most_sagitta_per_chord * most_sagitta_per_chord * (dx * dx + dy * dy);
+    if (sagitta == 0 || rise * rise > most)
         return fail("an arc has no or too large a sagitta");
     out = Arc{from, to, sagitta};
     at_ = to;

@@ -4,7 +4,7 @@
 // Contract
 //  1. Positions are absolute and exact: whole numbers of the file's quantum, each at most
 //     `coordinate_limit` from the origin. Everything else is in the unit that its name carries.
-//  2. An Operation is trivially copyable and owns nothing.
+//  2. An Operation is trivially copyable, owns nothing and can be compared.
 //  3. A motion whose ends differ in z climbs evenly along its length (a ramp or a helix).
 
 #pragma once
@@ -89,6 +89,7 @@ inline double cross_section_mm2(const PathStyle& style) {
 struct Line {
     Point from, to;
     bool hatch = false;  // belongs to a hatch run
+    friend bool operator==(const Line&, const Line&) = default;
 };
 
 // The circular arc from `from` to `to` whose middle is `sagitta` quanta off the middle of the
@@ -97,6 +98,7 @@ struct Line {
 struct Arc {
     Point from, to;
     std::int64_t sagitta = 0;
+    friend bool operator==(const Arc&, const Arc&) = default;
 };
 
 // One whole turn from `from` about the centre; `to` differs from `from` in z at most.
@@ -104,18 +106,21 @@ struct Circle {
     Point from, to;
     std::int64_t center_x = 0, center_y = 0;
     bool counter_clockwise = true;
+    friend bool operator==(const Circle&, const Circle&) = default;
 };
 
 // A straight motion without extrusion.
 struct Travel {
     Point from, to;
     bool hatch = false;
+    friend bool operator==(const Travel&, const Travel&) = default;
 };
 
 // A hatch run begins; its lines and travels follow as Line and Travel. For statistics only.
 struct HatchStart {
     double direction_x = 1, direction_y = 0;  // unit vector
     double pitch_mm = 0;  // signed: rows follow to the left of the direction if > 0
+    friend bool operator==(const HatchStart&, const HatchStart&) = default;
 };
 
 // A layer begins: the head goes to `start` from wherever it is, without extruding, z before x and y
@@ -123,33 +128,41 @@ struct HatchStart {
 struct LayerStart {
     std::uint32_t index = 0;  // from 0
     Point start;
+    friend bool operator==(const LayerStart&, const LayerStart&) = default;
 };
 
 struct PathStart {
     PathStyle style;
+    friend bool operator==(const PathStart&, const PathStart&) = default;
 };
 
 // Changes of the current path's style from here on.
 struct Width {
     double width_mm = 0;
+    friend bool operator==(const Width&, const Width&) = default;
 };
 struct Speed {
     double speed_mm_s = 0;
+    friend bool operator==(const Speed&, const Speed&) = default;
 };
 struct Acceleration {
     double acceleration_mm_s2 = 0;  // 0: the machine's own
+    friend bool operator==(const Acceleration&, const Acceleration&) = default;
 };
 struct TravelSpeed {
     double speed_mm_s = 0;
+    friend bool operator==(const TravelSpeed&, const TravelSpeed&) = default;
 };
 struct TravelAcceleration {
     double acceleration_mm_s2 = 0;  // 0: the machine's own
+    friend bool operator==(const TravelAcceleration&, const TravelAcceleration&) = default;
 };
 
 // The filament is drawn back until it is `depth_mm` behind where it was while extruding; 0: it is
 // pushed forward again.
 struct Retract {
     double depth_mm = 0;
+    friend bool operator==(const Retract&, const Retract&) = default;
 };
 
 enum class HeaterKind : std::uint8_t { bed = 0, chamber = 1, tool = 2 };
@@ -164,31 +177,37 @@ struct Temperature {
     Heater heater;
     double target_c = 0;  // 0: off
     bool wait = false;    // until it is reached
+    friend bool operator==(const Temperature&, const Temperature&) = default;
 };
 
 // Fan 0 cools the part.
 struct Fan {
     std::uint32_t fan = 0;
     double duty = 0;  // 0..1
+    friend bool operator==(const Fan&, const Fan&) = default;
 };
 
 struct Dwell {
     std::uint32_t time_ms = 0;
+    friend bool operator==(const Dwell&, const Dwell&) = default;
 };
 
 struct Tool {
     std::uint32_t tool = 0;
+    friend bool operator==(const Tool&, const Tool&) = default;
 };
 
 enum class PauseReason : std::uint8_t { user = 0, filament_change = 1 };
 
 struct Pause {
     PauseReason reason = PauseReason::user;
+    friend bool operator==(const Pause&, const Pause&) = default;
 };
 
 // What follows belongs to this object (metadata names it); 0: to none, such as a skirt.
 struct Object {
     std::uint32_t object = 0;
+    friend bool operator==(const Object&, const Object&) = default;
 };
 
 using Operation = std::variant<LayerStart, PathStart, Line, Arc, Circle, Travel, HatchStart, Width,

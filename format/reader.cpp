@@ -243,10 +243,17 @@ const FileHeader& Reader::header() const {
 }
 
 Result<std::optional<Operation>> Reader::next() {
-    Operation operation;
-    if (implementation_->next(operation)) return std::optional(operation);
+    if (const Operation* operation = read()) return std::optional(*operation);
     if (implementation_->error()) return *implementation_->error();
     return std::optional<Operation>();
+}
+
+const Operation* Reader::read() {
+    return implementation_->read();
+}
+
+const std::optional<Diagnostic>& Reader::error() const {
+    return implementation_->error();
 }
 
 const Layer& Reader::layer() const {

@@ -75,6 +75,10 @@ public:
 
     // The next operation, or none at the end.
     Result<std::optional<Operation>> next();
+    // The same without a copy, for those in a hurry: valid until the next call; null at the end and
+    // after an error, which error() then has.
+    const Operation* read();
+    const std::optional<Diagnostic>& error() const;
 
     // Of the layer that LayerStart was given out for last.
     const Layer& layer() const;

@@ -27,8 +27,8 @@ public:
         : blocks_(descriptor), name_(std::move(name)), options_(options) {}
 
     bool open();
-    // None: the end, or an error.
-    bool next(Operation& operation);
+    // Null: the end, or an error.
+    const Operation* read() { return next(operation_) ? &operation_ : nullptr; }
     bool seek_layer(std::uint32_t index);
 
     const std::optional<Diagnostic>& error() const { return error_; }
@@ -40,6 +40,7 @@ public:
 private:
     enum class Where { before_layers, in_layer, in_chunk, behind_layers, at_end };
 
+    bool next(Operation& operation);
     bool fail(const std::string& what, std::uint64_t offset, ExitStatus status = ExitStatus::input);
     bool fail_block(const BlockHead& head);
     bool fail_fault(std::uint64_t offset);
@@ -68,6 +69,7 @@ private:
     ReadOptions options_;
     FileHeader header_;
     std::optional<Diagnostic> error_;
+    Operation operation_;  // given out last
 
     Where where_ = Where::before_layers;
     bool layer_begins_ = false;  // LayerStart is to be given out
