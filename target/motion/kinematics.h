@@ -1,43 +1,56 @@
-// How far each motor has turned when the nozzle is at a position.
+// From axes to motors: what a path in x, y, z and e is for each motor, in microsteps, as a function of
+// the distance along the path. Every kind of machine is one alternative of Kinematics; a kind of function
+// that none of them has needed so far is one more alternative of MotorPath.
 //
 // Contract
-//  1. motor_coordinate is in microsteps, counted from the origin of coordinates; steps_per_mm may be negative
-//     for a motor that turns the other way.
-//  2. position_of(motor_coordinate of each motor) is the position.
-//
-// A kinematics is one alternative of the variant and one overload of each function below. Those whose motors
-// are linear in the position (Cartesian; CoreXY) share the step solver of motor_track.h through motor_form.
+//  1. Motor positions are in microsteps from `origin`, where all of them are 0.
+//  2. The extruder's motor counts from the begin of each path: what went before is the caller's to add.
+//  3. A motor with negative steps_per_mm turns the other way round; with 0 it never moves.
 
 #pragma once
 
 #include <array>
-#include <cstddef>
-#include <cstdint>
 #include <variant>
 
+#include "base/diagnostic.h"
 #include "target/motion/path.h"
 
 namespace lyr::motion {
 
-inline constexpr std::size_t kMotors = 4;  // three for the position, one for the extruder
+inline constexpr std::size_t motor_count = 4;
+// Of every machine; contract 2.
+inline constexpr std::size_t extruder_motor = 3;
 
-// Motor m drives axis m: 0 x, 1 y, 2 z, 3 e. Microsteps by millimetre, none zero.
+// Each axis has its own motor, of the same number.
 struct Cartesian {
-    std::array<double, kMotors> steps_per_mm{80, 80, 400, 400};
+    std::array<double, axis_count> steps_per_mm{};
 };
 
 using Kinematics = std::variant<Cartesian>;
 
-// A motor's coordinate as a linear form of the position, in microsteps by millimetre.
-struct MotorForm {
-    double x = 0, y = 0, z = 0, e = 0;
-    bool operator==(const MotorForm&) const = default;
+// start + rate * distance
+struct Linear {
+    double start = 0;
+    double rate = 0;  // per mm
 };
 
-MotorForm motor_form(const Kinematics& kinematics, std::size_t motor);
-double motor_coordinate(const MotorForm& form, const Position& position);
+// start + amplitude * (cos(phase + rate * distance) - cos(phase)), amplitude and rate positive.
+struct Harmonic {
+    double start = 0;
+    double amplitude = 0;
+    double phase_rad = 0;  // 0..2 pi
+    double rate = 0;       // rad per mm
+};
 
-using MotorCounts = std::array<std::int64_t, kMotors>;
-Position position_of(const Kinematics& kinematics, const MotorCounts& counts);
+using MotorPath = std::variant<Linear, Harmonic>;
+using MotorPaths = std::array<MotorPath, motor_count>;
+
+// Beyond any drive: a step of a nanometre.
+inline constexpr double most_steps_per_mm = 1e6;
+
+// Steps per mm are numbers up to most_steps_per_mm; otherwise which are not (status machine).
+Status check(const Kinematics& kinematics);
+
+MotorPaths motor_paths(const Kinematics& kinematics, const Path& path, const Point& origin);
 
 }  // namespace lyr::motion

@@ -1,78 +1,71 @@
-// The two paths a machine follows: a straight line and a circular arc in the plane (with an optional rise,
-// a helix), each carrying the extruder along in proportion to the distance travelled.
+// What the head is asked to follow: straight pieces and circular arcs in x and y, each with z and the
+// extruder moving evenly along. An arc stays an arc down to the motors; nothing here makes chords.
 //
-// An arc is kept as its exact ends, its heading at the start and its signed curvature, not as a centre and
-// angles: an arc that is almost straight then loses no digits, and no end drifts off its neighbour's start.
+// Method. An arc is walked as a chord from its start: after the angle phi the head is 2 r sin(phi / 2)
+// away, in the direction of the start's tangent turned by phi / 2. No difference of large numbers occurs,
+// so an arc whose radius is a thousand kilometres is as exact as a small one.
 //
 // Contract
-//  1. position_at(p, 0) is the start and position_at(p, length_mm(p)) the end, bit for bit.
-//  2. length_mm is the length in (x, y, z); where nothing moves but the extruder it is |e's change|.
-//     Extruder and rise are linear in the distance.
-//  3. arc_by_sagitta: positive sagitta turns counter-clockwise. For a chord c and sagitta h with
-//     c > 0 and h from 0 (a straight line) to c * kLargestSagittaRatio, heading and curvature are right to
-//     kArcRelativeError. The longer way round has |h| > c / 2.
-//  4. full_circle and arc_by_centre start at `start`; the radius is the distance to the centre. A full circle
-//     ends where it starts.
-//  5. Coordinates that are not finite, or beyond kLargestCoordinate_mm, are refused with a Diagnostic.
+//  1. point_at(path, 0) is `from`, point_at(path, length) is `to` up to rounding (a few ulps of the
+//     coordinates), for every radius.
+//  2. arc_through() takes the sagitta as the signed height of the arc's middle over the chord: positive
+//     is counter-clockwise, more than the radius is an arc of more than half a turn. Its sweep is
+//     4 atan(2 sagitta / chord) to a few ulps, from 0 up to, not including, a full turn.
+//  3. The length is that in space (a helix counts z), or of the extruder alone where nothing else moves.
+//  4. tangent_at() has length 1 in x, y and z, or is 0 where only the extruder moves.
 
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <variant>
-
-#include "base/diagnostic.h"
 
 namespace lyr::motion {
 
-// Four products and a quotient of exact inputs.
-inline constexpr double kArcRelativeError = 8 * 2.3e-16;
-// Beyond this the chord's direction carries the heading's error over into the far side of the circle.
-inline constexpr double kLargestSagittaRatio = 1e9;
-// A kilometre of machine, 1000 km of filament: positions still resolve far below a picometre-step.
-inline constexpr double kLargestCoordinate_mm = 1e9;
+// Of everything that is listed by axis; the extruder comes last.
+enum Axis : std::size_t { axis_x = 0, axis_y = 1, axis_z = 2, axis_e = 3 };
+inline constexpr std::size_t axis_count = 4;
 
-struct Position {
-    double x_mm = 0, y_mm = 0, z_mm = 0, e_mm = 0;
-    bool operator==(const Position&) const = default;
+struct Point {
+    double x = 0, y = 0, z = 0;  // mm
+    friend bool operator==(const Point&, const Point&) = default;
 };
 
 struct Line {
-    Position start, end;
+    Point from, to;
+    double advance_mm = 0;  // of the filament; negative: drawn back
 };
 
 struct Arc {
-    Position start, end;
-    double heading_x, heading_y;  // unit tangent of the plane projection at the start
-    double curvature_per_mm;      // of the plane projection; positive: counter-clockwise
-    double sweep_rad;             // signed like the curvature; at most a full turn
+    Point from, to;
+    double advance_mm = 0;
+    double center_x_mm = 0, center_y_mm = 0, radius_mm = 0;
+    double start_angle_rad = 0;
+    double sweep_rad = 0;  // counter-clockwise positive; at most one turn
 };
 
 using Path = std::variant<Line, Arc>;
 
-Result<Path> line(const Position& start, const Position& end);
+// The arc from `from` to `to` with this sagitta. It is the line where the ends are the same in x and y,
+// or the arc's middle is off the chord by less than rounding.
+Path arc_through(const Point& from, const Point& to, double sagitta_mm, double advance_mm);
 
-// Start and end may differ in z and e too. A zero sagitta gives a line.
-Result<Path> arc_by_sagitta(const Position& start, const Position& end, double sagitta_mm);
+// One whole turn from `from` about the centre; `to_z_mm` is where it ends.
+Path circle_about(const Point& from, double center_x_mm, double center_y_mm, bool counter_clockwise,
+                  double to_z_mm, double advance_mm);
 
-// `end_z_mm` and `end_e_mm` as in a helix; `sweep_rad` signed, |sweep| <= 2 pi.
-Result<Path> arc_by_centre(const Position& start, double centre_x_mm, double centre_y_mm,
-                           double sweep_rad, double end_z_mm, double end_e_mm);
-Result<Path> full_circle(const Position& start, double centre_x_mm, double centre_y_mm,
-                         bool counter_clockwise, double end_z_mm, double end_e_mm);
+// From a centre, a radius, and angles; sweeps of more than a turn are the caller's to split.
+Path arc_about(double center_x_mm, double center_y_mm, double radius_mm, double start_angle_rad,
+               double sweep_rad, double from_z_mm, double to_z_mm, double advance_mm);
 
-const Position& start_of(const Path& path);
-const Position& end_of(const Path& path);
-double length_mm(const Path& path);
-Position position_at(const Path& path, double distance_mm);
+const Point& start_of(const Path& path);
+const Point& end_of(const Path& path);
+double advance_of(const Path& path);
 
-// How each coordinate changes by millimetre travelled: (x, y, z) is a unit vector, or zero where only the
-// extruder moves; e is its rate.
-using Rates = std::array<double, 4>;
-Rates rates_at_start(const Path& path);
-Rates rates_at_end(const Path& path);
-
-// Of the arc's plane projection: length, radius.
-double plane_length_mm(const Arc& arc);
-double radius_mm(const Arc& arc);
+// Contract 3.
+double length_of(const Path& path);
+Point point_at(const Path& path, double distance_mm);
+// The direction of motion; contract 4.
+Point tangent_at(const Path& path, double distance_mm);
 
 }  // namespace lyr::motion

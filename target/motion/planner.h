@@ -1,117 +1,106 @@
-// Look-ahead over a bounded window of moves: how fast each may begin, run and end.
+// Look-ahead: finds for a run of moves the highest speeds from which the machine can still keep every
+// limit that follows, up to a stop at the end of what it knows.
 //
-// Every move is capped by what its own path allows (move_limits.h) and every corner by the change of
-// direction there. On a push, one backward pass over the tail whose speeds are still open raises the speeds
-// from which the machine can stop at the end of what it knows; when a move leaves, its speed at the end
-// follows from its start and from the next one's cap. Neither pass ever looks at a move whose speed is settled.
+// Method. Speeds at the junctions are limited backwards (each move must be able to slow down to its end)
+// and then forwards (each must be able to reach it), in squares, where even acceleration is a sum. Moves
+// wait in a ring. When it is full, those go out whose speeds no later move can change, or else, to make
+// room, a quarter of the ring with the speeds that are safe for certain.
 //
 // Contract
-//  1. No planned speed, acceleration or speed jump exceeds a limit; each segment starts at exactly the speed
-//     at which the one before ended, and the last one before a stop ends at zero.
-//  2. For the moves that were known when a segment left (at most `window`), no trapezoid profile is faster.
-//  3. Which segments come out does not depend on when they are taken, as long as they are taken whenever
-//     full() is true.
-//  4. Whatever is pushed, it is planned to stop at the end of what is known.
-//  5. A tangent-continuous junction is not slowed; a reversal is a stop; a move of the extruder alone begins
-//     and ends with a stop, unless it continues another one in the same direction.
-//  6. No memory is allocated after construction, except for the text of an error.
-//
-// Typical use, with a StepGenerator downstream:
-//     while (planner.full()) drain();               // StepGenerator::read takes segments
-//     if (Status s = planner.push(move); !s) return s.error();
-//     ... at the end, or whenever the source of moves runs dry:   planner.flush(); drain();
+//  1. Planned moves come out in the order in which moves went in, each once. The first starts at time 0
+//     and each where the one before ends, at the same speed. The last before a flush or dwell ends at 0.
+//  2. No planned move exceeds its MoveLimits, no junction its corner speed.
+//  3. With fewer than `capacity` moves between flushes the plan is the fastest that keeps 2. Otherwise
+//     each move is planned with at least three quarters of the capacity known beyond it.
+//  4. Start times are whole nanoseconds plus a remainder that is carried along: the sum of a print's
+//     moves does not depend on how often it was rounded.
+//  5. Nothing is allocated after create().
+//  6. A refused move (error) leaves the planner as it was.
 
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "base/diagnostic.h"
 #include "target/motion/limits.h"
-#include "target/motion/path.h"
 #include "target/motion/profile.h"
 
 namespace lyr::motion {
 
-struct Move {
-    Path path;
-    double speed_mm_s = 0;  // asked for along the path; of the extruder where nothing else moves
-    double acceleration_mm_s2 =
-        std::numeric_limits<double>::infinity();  // a lower one than the machine's
-    bool stop_at_end = false;
-    std::uint32_t tag = 0;  // comes back with every step of this move
-};
-
-struct Dwell {
-    double duration_s = 0;  // at rest
-    std::uint32_t tag = 0;
-};
-
-struct PlannedSegment {
+struct PlannedMove {
     Path path;
     Profile profile;
+    std::int64_t start_ns = 0;
+    double start_part_ns = 0;  // the start is this much later; 0..1
     std::uint32_t tag = 0;
 };
 
 class Planner {
 public:
-    static constexpr std::size_t kDefaultWindow = 256;
+    // Enough to come to rest from 300 mm/s at 3000 mm/s^2 over moves of 20 um.
+    static constexpr std::size_t default_capacity = 1024;
+    // Moves that follow each other meet within this: far below a microstep, far above rounding.
+    static constexpr double join_mm = 1e-6;
+    // A coordinate within 100 m keeps its rounding far below a microstep, a duration within 11 days
+    // below a nanosecond.
+    static constexpr double farthest_mm = 1e5;
+    static constexpr double longest_s = 1e6;
+    // Below the rounding of any coordinate; a move shorter than this is none.
+    static constexpr double shortest_mm = 1e-12;
 
-    // `window` of at least 2.
-    explicit Planner(const Limits& limits, const Position& start = {},
-                     std::size_t window = kDefaultWindow);
+    // Error (status machine): limits that are not positive, or a capacity below 4.
+    static Result<Planner> create(const Limits& limits, std::size_t capacity = default_capacity);
 
-    // The move must start where the last one ended (position()). One of no length is accepted and leaves
-    // nothing but its stop. Errors (status internal): full(), a gap. (status input): numbers out of range.
-    // Nothing is changed by an error.
+    // A full planner takes no more; pop() makes room.
+    bool full() const { return size_ == ring_.size(); }
+    // Errors (status machine): not finite, too far or too long, a speed that is not positive, an arc
+    // that does not lead to its end, a start that is not the end of the move before, a full planner.
+    // A move shorter than shortest_mm is taken and left out.
     Status push(const Move& move);
-    Status push(const Dwell& dwell);
-
-    // The machine comes to rest at the end of what was pushed; everything may now be taken.
+    // The moves pushed so far end at rest, and those that follow begin so much later, at most
+    // longest_s; a time that is not positive is no wait, only a stop.
+    void dwell(double time_s);
+    // What was pushed so far ends at rest, and pop() gives all of it.
     void flush();
 
-    // The oldest segment, if its speeds are settled or the window is full.
-    bool pop(PlannedSegment& segment);
+    // The next planned move, if there is one whose speeds are settled. False: push more, or flush.
+    bool pop(PlannedMove& planned);
 
-    bool full() const { return count_ == ring_.size(); }
-    bool empty() const { return count_ == 0; }
-    std::size_t size() const { return count_; }
-    const Position& position() const { return position_; }  // the end of what was pushed
-    const Limits& limits() const { return limits_; }
-
-    // Limits for the moves pushed from now on.
-    void set_limits(const Limits& limits) { limits_ = limits; }
-    // Declares where the machine is, after homing. Requires empty().
-    void set_position(const Position& position);
+    // Where the last move that was popped ends.
+    std::int64_t time_ns() const { return time_ns_; }
 
 private:
     struct Entry {
-        Path path;
-        double length_mm;
-        double top_speed_sq;
-        double acceleration_mm_s2;
-        double start_cap_sq;    // of the corner at its start
-        double start_speed_sq;  // from which it is possible to stop at the end of what is known
-        bool settled;           // start_speed_sq will not rise any more
-        double dwell_s;         // at rest at the start of this entry, instead of a path
-        std::uint32_t tag;
+        Move move;
+        double length_mm = 0;
+        MoveLimits limits;
+        double junction_mm2_s2 = 0;  // largest squared speed at its start
+        double start_mm2_s2 = 0;     // planned
+        double dwell_ns = 0;         // before it
     };
 
-    Entry& entry(std::size_t index) { return ring_[(head_ + index) % ring_.size()]; }
-    void append(const Entry& added);
-    void raise_start_speeds();
+    Planner(const Limits& limits, std::size_t capacity) : limits_(limits), ring_(capacity) {}
+    Entry& at(std::size_t index);
+    Status check(const Move& move, double length_mm) const;
+    double junction_mm2_s2(const Entry& next) const;
+    void settle();
+    std::size_t limit_backwards();
+    void limit_forwards();
+    void advance_ns(double time_ns);
 
     Limits limits_;
     std::vector<Entry> ring_;
-    std::size_t head_ = 0, count_ = 0;
-    Position position_;
-    double head_speed_sq_ = 0;  // at which the oldest entry starts, or the machine moves at the end
-    bool stop_at_tail_ = true;  // the next move starts from rest
-    // Of the newest entry, for the corner to the next.
-    Rates tail_rates_{};
-    double tail_length_mm_ = 0, tail_acceleration_ = 0, tail_top_speed_sq_ = 0;
+    std::size_t first_ = 0, size_ = 0;
+    std::size_t settled_ = 0;  // moves at the front that may go out
+    std::size_t flushed_ = 0;  // moves at the front that must
+    bool begun_ = false;       // `last_` and its limits are those of a move
+    Move last_;
+    MoveLimits last_limits_;
+    bool rests_ = true;  // before the next move
+    double dwell_ns_ = 0;
+    std::int64_t time_ns_ = 0;
+    double time_part_ns_ = 0;
 };
 
 }  // namespace lyr::motion

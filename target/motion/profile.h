@@ -1,49 +1,52 @@
-// The speed along one path: up to three phases of constant acceleration (gain speed, hold, lose speed).
+// How fast a path is walked: time as a function of distance and back. Phases of even acceleration, one
+// after the other; a trapezoid has three of them.
 //
 // Contract
-//  1. make_profile is the fastest motion over `length_mm` from start to end speed with |acceleration| and
-//     speed within bounds. It requires |end^2 - start^2| <= 2 * acceleration * length (to rounding).
-//  2. Phases follow one another without gap in distance and time; speed is continuous (relative 1e-12).
-//     The first begins at distance 0 and time 0; the last ends at exactly length_mm and duration_s.
-//  3. time_at is the inverse of distance_at. Both are evaluated from the slow end of a phase, where the
-//     formula does not cancel: an error of the distance d causes a time error of d / speed and no more.
-//  4. A dwell is one phase of no length.
+//  1. distance_at(time_at(s)) is s, time_at(0) is 0 and time_at(length) is the duration, up to rounding.
+//  2. Distance and speed are continuous over phases; distance never falls.
+//  3. trapezoid() begins and ends with the speeds given, never exceeds `top_speed` and is the fastest
+//     such profile with at most this acceleration.
 
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
 
 namespace lyr::motion {
 
 struct Phase {
-    double begin_mm, end_mm;
-    double begin_s, end_s;
-    double begin_speed_mm_s, end_speed_mm_s;
-    double acceleration_mm_s2;  // signed
+    double distance_mm = 0;  // of its begin, along the path
+    double time_s = 0;       // of its begin, since the begin of the move
+    double speed_mm_s = 0;   // at its begin
+    double acceleration_mm_s2 = 0;
 };
 
 struct Profile {
-    static constexpr int kMostPhases = 3;
-    std::array<Phase, kMostPhases> phases;
-    int phase_count = 0;
+    static constexpr std::size_t phase_count = 3;
+    std::array<Phase, phase_count> phases;
+    double length_mm = 0;
+    double duration_s = 0;
+    double end_speed_mm_s = 0;
 
-    double length_mm() const { return phase_count ? last().end_mm : 0; }
-    double duration_s() const { return phase_count ? last().end_s : 0; }
-    const Phase& last() const { return phases[static_cast<std::size_t>(phase_count - 1)]; }
+    double time_at(double distance_mm) const;
+    double distance_at(double time_s) const;
+    double speed_at(double time_s) const;
 };
 
-// Speeds are given squared, as the planner keeps them.
-struct ProfileRequest {
-    double length_mm;
-    double start_speed_sq, end_speed_sq, top_speed_sq;
-    double acceleration_mm_s2;
-};
+// When a phase gets to a distance: 2 s / (v + w) with v, w the speeds at both ends of the way, which
+// loses no digits for any acceleration, none included. Before its begin it is the phase's begin.
+inline double time_in_phase(const Phase& phase, double distance_mm) {
+    const double way_mm = distance_mm - phase.distance_mm;
+    if (!(way_mm > 0)) return phase.time_s;
+    const double v = phase.speed_mm_s;
+    const double w = std::sqrt(std::max(0.0, v * v + 2 * phase.acceleration_mm_s2 * way_mm));
+    return phase.time_s + 2 * way_mm / (v + w);
+}
 
-Profile make_profile(const ProfileRequest& request);
-Profile make_dwell(double duration_s);
-
-double distance_at(const Profile& profile, double time_s);
-double speed_at(const Profile& profile, double time_s);
-double time_at(const Profile& profile, double distance_mm);
+// The speeds at the ends must be reachable from each other over the length.
+Profile trapezoid(double length_mm, double start_speed_mm_s, double end_speed_mm_s,
+                  double top_speed_mm_s, double acceleration_mm_s2);
 
 }  // namespace lyr::motion
