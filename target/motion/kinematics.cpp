@@ -19,8 +19,8 @@ MotorPath even(double from_mm, double to_mm, double length_mm, double origin_mm,
                   steps_per_mm * (to_mm - from_mm) / length_mm};
 }
 
-// An angle that runs backwards has the same cosine as its mirror image that runs forwards; a motor the
-// other way round is half a turn ahead.
+// An angle that runs backwards has the same cosine as its mirror image that runs forwards; a motor
+// the other way round is half a turn ahead.
 MotorPath turning(const Arc& arc, std::size_t axis, double length_mm, double origin_mm,
                   double steps_per_mm) {
     const double angle_rad = arc.start_angle_rad - (axis == axis_y ? pi / 2 : 0);

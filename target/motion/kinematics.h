@@ -1,10 +1,11 @@
-// From axes to motors: what a path in x, y, z and e is for each motor, in microsteps, as a function of
-// the distance along the path. Every kind of machine is one alternative of Kinematics; a kind of function
-// that none of them has needed so far is one more alternative of MotorPath.
+// From axes to motors: what a path in x, y, z and e is for each motor, in microsteps, as a function
+// of the distance along the path. Every kind of machine is one alternative of Kinematics; a kind of
+// function that none of them has needed so far is one more alternative of MotorPath.
 //
 // Contract
 //  1. Motor positions are in microsteps from `origin`, where all of them are 0.
-//  2. The extruder's motor counts from the begin of each path: what went before is the caller's to add.
+//  2. The extruder's motor counts from the begin of each path: what went before is the caller's to
+//     add.
 //  3. A motor with negative steps_per_mm turns the other way round; with 0 it never moves.
 
 #pragma once

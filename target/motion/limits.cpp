@@ -1,5 +1,6 @@
-// Directions are folded into the first quadrant: the limits of an axis know no sign, so only |cos| and
-// |sin| of the direction of an arc's radius count, and an arc sweeps one interval of that angle.
+// Directions are folded into the first quadrant: the limits of an axis know no sign, so only |cos|
+// and |sin| of the direction of an arc's radius count, and an arc sweeps one interval of that
+// angle.
 
 #include "target/motion/limits.h"
 
@@ -15,9 +16,10 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// On an arc this share of the weaker axis's acceleration is kept for changing speed; 0.8 is then left for
-// the turning (both are perpendicular), which costs a tenth of the highest speed on a circle. It is the
-// same for every piece of a circle, so that cutting one up does not make it slower.
+// On an arc this share of the weaker axis's acceleration is kept for changing speed; 0.8 is then
+// left for the turning (both are perpendicular), which costs a tenth of the highest speed on a
+// circle. It is the same for every piece of a circle, so that cutting one up does not make it
+// slower.
 constexpr double tangential_share = 0.6;
 
 double ratio(double limit, double share) {
@@ -44,13 +46,17 @@ Folded folded_sweep(const Arc& arc) {
         return std::min(in_half_turn, 2 - in_half_turn) * (pi / 2);
     };
     Folded folded{std::min(fold(low), fold(high)), std::max(fold(low), fold(high))};
-    for (double quarter = std::ceil(low); quarter <= high; ++quarter)
-        (std::fmod(quarter, 2) == 0 ? folded.low : folded.high) = fold(quarter);
+    // An axis is passed: even quarters are those of x, odd ones of y.
+    const auto passes = [=](double first) {
+        return first + 2 * std::ceil((low - first) / 2) <= high;
+    };
+    if (passes(0)) folded.low = 0;
+    if (passes(1)) folded.high = pi / 2;
     return folded;
 }
 
-// The largest A with A sin(p) + C cos(p) <= limit for all p of the range: what is left in the direction
-// of motion when C is needed along the radius. The tightest p has cos(p) = C / limit.
+// The largest A with A sin(p) + C cos(p) <= limit for all p of the range: what is left in the
+// direction of motion when C is needed along the radius. The tightest p has cos(p) = C / limit.
 double left_over(double needed, double limit, const Folded& range) {
     const double tightest =
         std::clamp(std::acos(std::min(1.0, needed / limit)), range.low, range.high);

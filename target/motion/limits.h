@@ -1,16 +1,18 @@
 // What the machine can do, and what that means for one move and for the corner between two.
 //
 // Contract
-//  1. While a move is walked within its MoveLimits, no axis exceeds its speed or its acceleration, in
-//     whatever direction an arc points on its way: its tangential and its centripetal acceleration are
-//     added up as vectors.
-//  2. The acceleration that a move asks for bounds its tangential and its centripetal acceleration each.
-//  3. corner_speed_mm_s() is the speed at which the axes, accelerating along the corner's bisector, go
-//     round a circle that touches both tangents and passes the corner within the junction deviation,
-//     or, if that is smaller, one that touches no further away than half of the shorter move (a curve
-//     given as many short lines). Where the tangents agree there is no limit but the moves' own.
-//  4. The extruder's speed does not jump by more than extruder_jump_mm_s at a corner. Between a move of
-//     the extruder alone and any other the machine stops.
+//  1. While a move is walked within its MoveLimits, no axis exceeds its speed or its acceleration,
+//     in whatever direction an arc points on its way: its tangential and its centripetal
+//     acceleration are added up as vectors.
+//  2. The acceleration that a move asks for bounds its tangential and its centripetal acceleration
+//     each.
+//  3. corner_speed_mm_s() is the speed at which the axes, accelerating along the corner's bisector,
+//     go round a circle that touches both tangents and passes the corner within the junction
+//     deviation, or, if that is smaller, one that touches no further away than half of the shorter
+//     move (a curve given as many short lines). Where the tangents agree there is no limit but the
+//     moves' own.
+//  4. The extruder's speed does not jump by more than extruder_jump_mm_s at a corner. Between a
+//     move of the extruder alone and any other the machine stops.
 
 #pragma once
 

@@ -1,5 +1,5 @@
-// A rising half wave is a falling one seen in a mirror: with `heading_` the cosine mirrored as well, all
-// spans are solved as falling ones.
+// A rising half wave is a falling one seen in a mirror: with `heading_` the cosine mirrored as
+// well, all spans are solved as falling ones.
 
 #include "target/motion/motor_walk.h"
 

@@ -1,15 +1,16 @@
-// One motor along one move: after which distance it steps next, and which way. Knows nothing of time.
+// One motor along one move: after which distance it steps next, and which way. Knows nothing of
+// time.
 //
-// Method. The motor's function of distance is cut at its turning points; between them it only rises or
-// only falls, and each middle between two microsteps that lies in its range is passed once. Solved from
-// the begin of such a span, with t = tan(angle / 2) = change / (|sin| at the begin + |sin| at the end):
-// no digits are lost at turning points nor on arcs that are nearly straight.
+// Method. The motor's function of distance is cut at its turning points; between them it only rises
+// or only falls, and each middle between two microsteps that lies in its range is passed once.
+// Solved from the begin of such a span, with t = tan(angle / 2) = change / (|sin| at the begin +
+// |sin| at the end): no digits are lost at turning points nor on arcs that are nearly straight.
 //
 // Contract
 //  1. Distances come in ascending order. Between two of them the ideal position is within half a
 //     microstep (and touch_steps) of the count.
-//  2. A middle that a span does not pass by touch_steps is not passed in this span; if the next span
-//     goes on the same way, it is passed at its begin.
+//  2. A middle that a span does not pass by touch_steps is not passed in this span; if the next
+//     span goes on the same way, it is passed at its begin.
 
 #pragma once
 

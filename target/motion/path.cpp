@@ -10,8 +10,8 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-// Of sagitta to half chord: below this the arc's middle is off the chord by less than the rounding of
-// the chord itself.
+// Of sagitta to half chord: below this the arc's middle is off the chord by less than the rounding
+// of the chord itself.
 constexpr double flattest = 1e-15;
 
 double sign_of(double value) {
@@ -66,7 +66,8 @@ Path arc_through(const Point& from, const Point& to, double sagitta_mm, double a
     Arc arc{from, to, advance_mm};
     arc.sweep_rad = 4 * std::atan(t);
     arc.radius_mm = chord_mm * (1 + t * t) / (4 * std::abs(t));
-    // The start's tangent lies half the sweep before the chord's direction, the radius a quarter turn.
+    // The start's tangent lies half the sweep before the chord's direction, the radius a quarter
+    // turn.
     arc.start_angle_rad = std::atan2(dy, dx) - arc.sweep_rad / 2 - sign_of(t) * pi / 2;
     arc.center_x_mm = from.x - arc.radius_mm * std::cos(arc.start_angle_rad);
     arc.center_y_mm = from.y - arc.radius_mm * std::sin(arc.start_angle_rad);

@@ -1,17 +1,19 @@
-// What the head is asked to follow: straight pieces and circular arcs in x and y, each with z and the
-// extruder moving evenly along. An arc stays an arc down to the motors; nothing here makes chords.
+// What the head is asked to follow: straight pieces and circular arcs in x and y, each with z and
+// the extruder moving evenly along. An arc stays an arc down to the motors; nothing here makes
+// chords.
 //
-// Method. An arc is walked as a chord from its start: after the angle phi the head is 2 r sin(phi / 2)
-// away, in the direction of the start's tangent turned by phi / 2. No difference of large numbers occurs,
-// so an arc whose radius is a thousand kilometres is as exact as a small one.
+// Method. An arc is walked as a chord from its start: after the angle phi the head is 2 r sin(phi /
+// 2) away, in the direction of the start's tangent turned by phi / 2. No difference of large
+// numbers occurs, so an arc whose radius is a thousand kilometres is as exact as a small one.
 //
 // Contract
 //  1. point_at(path, 0) is `from`, point_at(path, length) is `to` up to rounding (a few ulps of the
 //     coordinates), for every radius.
-//  2. arc_through() takes the sagitta as the signed height of the arc's middle over the chord: positive
-//     is counter-clockwise, more than the radius is an arc of more than half a turn. Its sweep is
-//     4 atan(2 sagitta / chord) to a few ulps, from 0 up to, not including, a full turn.
-//  3. The length is that in space (a helix counts z), or of the extruder alone where nothing else moves.
+//  2. arc_through() takes the sagitta as the signed height of the arc's middle over the chord:
+//     positive is counter-clockwise, more than the radius is an arc of more than half a turn. Its
+//     sweep is 4 atan(2 sagitta / chord) to a few ulps, from 0 up to, not including, a full turn.
+//  3. The length is that in space (a helix counts z), or of the extruder alone where nothing else
+//     moves.
 //  4. tangent_at() has length 1 in x, y and z, or is 0 where only the extruder moves.
 
 #pragma once
@@ -46,8 +48,8 @@ struct Arc {
 
 using Path = std::variant<Line, Arc>;
 
-// The arc from `from` to `to` with this sagitta. It is the line where the ends are the same in x and y,
-// or the arc's middle is off the chord by less than rounding.
+// The arc from `from` to `to` with this sagitta. It is the line where the ends are the same in x
+// and y, or the arc's middle is off the chord by less than rounding.
 Path arc_through(const Point& from, const Point& to, double sagitta_mm, double advance_mm);
 
 // One whole turn from `from` about the centre; `to_z_mm` is where it ends.

@@ -59,7 +59,7 @@ Planner::Entry& Planner::at(std::size_t index) {
 
 Status Planner::push(const Move& move) {
     const double length_mm = length_of(move.path);
-    if (const Status sound = check(move, length_mm); !sound) return sound;
+    if (Status sound = check(move, length_mm); !sound) return sound;
     if (length_mm < shortest_mm) return Done{};
     Entry next;
     next.move = move;
@@ -122,8 +122,8 @@ void Planner::settle() {
     settled_ = std::max({final, flushed_, full() ? size_ / share_to_release : 0});
 }
 
-// Returns how many moves at the front no later move can change: those before the last junction whose
-// own limit is the tightest.
+// Returns how many moves at the front no later move can change: those before the last junction
+// whose own limit is the tightest.
 std::size_t Planner::limit_backwards() {
     std::size_t final = 0;
     double end_mm2_s2 = 0;

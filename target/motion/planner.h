@@ -1,19 +1,20 @@
-// Look-ahead: finds for a run of moves the highest speeds from which the machine can still keep every
-// limit that follows, up to a stop at the end of what it knows.
+// Look-ahead: finds for a run of moves the highest speeds from which the machine can still keep
+// every limit that follows, up to a stop at the end of what it knows.
 //
-// Method. Speeds at the junctions are limited backwards (each move must be able to slow down to its end)
-// and then forwards (each must be able to reach it), in squares, where even acceleration is a sum. Moves
-// wait in a ring. When it is full, those go out whose speeds no later move can change, or else, to make
-// room, a quarter of the ring with the speeds that are safe for certain.
+// Method. Speeds at the junctions are limited backwards (each move must be able to slow down to its
+// end) and then forwards (each must be able to reach it), in squares, where even acceleration is a
+// sum. Moves wait in a ring. When it is full, those go out whose speeds no later move can change,
+// or else, to make room, a quarter of the ring with the speeds that are safe for certain.
 //
 // Contract
-//  1. Planned moves come out in the order in which moves went in, each once. The first starts at time 0
-//     and each where the one before ends, at the same speed. The last before a flush or dwell ends at 0.
+//  1. Planned moves come out in the order in which moves went in, each once. The first starts at
+//     time 0 and each where the one before ends, or a dwell later, at the same speed. The last
+//     before a flush or dwell ends at speed 0.
 //  2. No planned move exceeds its MoveLimits, no junction its corner speed.
-//  3. With fewer than `capacity` moves between flushes the plan is the fastest that keeps 2. Otherwise
-//     each move is planned with at least three quarters of the capacity known beyond it.
-//  4. Start times are whole nanoseconds plus a remainder that is carried along: the sum of a print's
-//     moves does not depend on how often it was rounded.
+//  3. With fewer than `capacity` moves between flushes the plan is the fastest that keeps 2.
+//     Otherwise each move is planned with at least three quarters of the capacity known beyond it.
+//  4. Start times are whole nanoseconds plus a remainder that is carried along: the sum of a
+//     print's moves does not depend on how often it was rounded.
 //  5. Nothing is allocated after create().
 //  6. A refused move (error) leaves the planner as it was.
 
@@ -54,9 +55,9 @@ public:
 
     // A full planner takes no more; pop() makes room.
     bool full() const { return size_ == ring_.size(); }
-    // Errors (status machine): not finite, too far or too long, a speed that is not positive, an arc
-    // that does not lead to its end, a start that is not the end of the move before, a full planner.
-    // A move shorter than shortest_mm is taken and left out.
+    // Errors (status machine): not finite, too far or too long, a speed that is not positive, an
+    // arc that does not lead to its end, a start that is not the end of the move before, a full
+    // planner. A move shorter than shortest_mm is taken and left out.
     Status push(const Move& move);
     // The moves pushed so far end at rest, and those that follow begin so much later, at most
     // longest_s; a time that is not positive is no wait, only a stop.

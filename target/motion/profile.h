@@ -1,11 +1,12 @@
-// How fast a path is walked: time as a function of distance and back. Phases of even acceleration, one
-// after the other; a trapezoid has three of them.
+// How fast a path is walked: time as a function of distance and back. Phases of even acceleration,
+// one after the other; a trapezoid has three of them.
 //
 // Contract
-//  1. distance_at(time_at(s)) is s, time_at(0) is 0 and time_at(length) is the duration, up to rounding.
+//  1. distance_at(time_at(s)) is s, time_at(0) is 0 and time_at(length) is the duration, up to
+//     rounding.
 //  2. Distance and speed are continuous over phases; distance never falls.
-//  3. trapezoid() begins and ends with the speeds given, never exceeds `top_speed` and is the fastest
-//     such profile with at most this acceleration.
+//  3. trapezoid() begins and ends with the speeds given, never exceeds `top_speed` and is the
+//     fastest such profile with at most this acceleration.
 
 #pragma once
 
@@ -35,8 +36,9 @@ struct Profile {
     double speed_at(double time_s) const;
 };
 
-// When a phase gets to a distance: 2 s / (v + w) with v, w the speeds at both ends of the way, which
-// loses no digits for any acceleration, none included. Before its begin it is the phase's begin.
+// When a phase gets to a distance: 2 s / (v + w) with v, w the speeds at both ends of the way,
+// which loses no digits for any acceleration, none included. Before its begin it is the phase's
+// begin.
 inline double time_in_phase(const Phase& phase, double distance_mm) {
     const double way_mm = distance_mm - phase.distance_mm;
     if (!(way_mm > 0)) return phase.time_s;

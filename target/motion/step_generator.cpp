@@ -1,4 +1,5 @@
-// Each motor's next step waits with its time in whole nanoseconds; the soonest of them is the next event.
+// Each motor's next step waits with its time in whole nanoseconds; the soonest of them is the next
+// event.
 
 #include "target/motion/step_generator.h"
 

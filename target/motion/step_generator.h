@@ -1,16 +1,19 @@
-// When each motor steps: a motor steps when its ideal position passes the middle between two microsteps,
-// so that it is always at the microstep nearest to the ideal. Times are solved, not sampled: the inverse
-// of the motor's function of distance, then the inverse of the speed profile, both in closed form.
+// When each motor steps: a motor steps when its ideal position passes the middle between two
+// microsteps, so that it is always at the microstep nearest to the ideal. Times are solved, not
+// sampled: the inverse of the motor's function of distance, then the inverse of the speed profile,
+// both in closed form.
 //
 // Contract
-//  1. At every time each motor is within half a microstep (and MotorWalk::touch_steps) of its ideal position.
-//  2. A step comes within 1 us of the exact solution (in practice within 1 ns, the rounding of times).
-//  3. Positions are whole counts from the origin for the whole print: nothing drifts. The extruder's
-//     fraction of a step is carried from move to move.
-//  4. A position that touches a middle and turns back without passing it by touch_steps makes no step;
-//     one that stops there and goes on makes it when it goes on.
-//  5. Events come in order of time. Motors that step in the same nanosecond of a move share an event;
-//     a motor is never twice in one event.
+//  1. At every time each motor is within half a microstep (and MotorWalk::touch_steps) of its ideal
+//     position.
+//  2. A step comes within 1 us of the exact solution (in practice within 1 ns, the rounding of
+//     times).
+//  3. Positions are whole counts from the origin for the whole print: nothing drifts. The
+//     extruder's fraction of a step is carried from move to move.
+//  4. A position that touches a middle and turns back without passing it by touch_steps makes no
+//     step; one that stops there and goes on makes it when it goes on.
+//  5. Events come in order of time. Motors that step in the same nanosecond of a move share an
+//     event; a motor is never twice in one event.
 //  6. The same moves give the same events. Nothing is allocated.
 
 #pragma once

@@ -15,8 +15,8 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr double rounding = 1 + 1e-12;
 
-// The largest acceleration of an axis of the plane anywhere on an arc, at the move's top speed and full
-// acceleration along the path, from the arc's geometry.
+// The largest acceleration of an axis of the plane anywhere on an arc, at the move's top speed and
+// full acceleration along the path, from the arc's geometry.
 double largest_acceleration(const Arc& arc, const MoveLimits& own, bool of_x) {
     const double level = arc.radius_mm * std::abs(arc.sweep_rad) / length_of(arc);
     const double along = level * own.acceleration_mm_s2;

@@ -1,6 +1,6 @@
-// For the tests of motion: plans a list of moves, takes all steps, and knows where the axes ideally are
-// at any time. The ideal is computed in long double straight from the plan's paths and phases, apart
-// from the code that finds the steps.
+// For the tests of motion: plans a list of moves, takes all steps, and knows where the axes ideally
+// are at any time. The ideal is computed in long double straight from the plan's paths and phases,
+// apart from the code that finds the steps.
 
 #pragma once
 
@@ -159,8 +159,8 @@ inline std::vector<MotorStep> steps_of(const Run& run, std::size_t motor) {
     return steps;
 }
 
-// How far a motor's position ever is from the ideal, in steps: looked at on both sides of every step and
-// at a few times between each two.
+// How far a motor's position ever is from the ideal, in steps: looked at on both sides of every
+// step and at a few times between each two.
 inline Real largest_deviation(const Run& run, std::size_t motor) {
     constexpr int looks = 4;
     Ideal ideal(run);

@@ -1,5 +1,5 @@
-// Speeds and accelerations of the axes as the steps carry them out: by differences of the ideal motion
-// over time, apart from everything that computed the limits.
+// Speeds and accelerations of the axes as the steps carry them out: by differences of the ideal
+// motion over time, apart from everything that computed the limits.
 
 #include <doctest/doctest.h>
 
@@ -16,8 +16,8 @@ using test::Job;
 using test::Real;
 using test::Run;
 
-// A difference is a mean of what it is taken for, so that only rounding can put it above the limit: four
-// positions of up to 200 mm in long double, over the square of a time of at least 0.1 us.
+// A difference is a mean of what it is taken for, so that only rounding can put it above the limit:
+// four positions of up to 200 mm in long double, over the square of a time of at least 0.1 us.
 constexpr Real rounding = 1e-6L;
 constexpr Real rounding_mm_s2 = 0.02L;
 constexpr Real shortest_s = 1e-4L, share_of_phase = 1e-3L;
@@ -84,7 +84,8 @@ TEST_CASE("limits 1, planner 2: no axis is ever faster or accelerated more than 
 TEST_CASE("limits 3, planner 2: a line into a tangent arc and out again keeps its speed") {
     Job job;
     job.limits = test::even_limits(500, 3000);
-    // A stadium: two lines of 50 mm and two half circles of radius 5 mm; 60 mm/s need 720 mm/s^2 there.
+    // A stadium: two lines of 50 mm and two half circles of radius 5 mm; 60 mm/s need 720 mm/s^2
+    // there.
     const Point a{0, 0, 0}, b{50, 0, 0}, c{50, 10, 0}, d{0, 10, 0};
     for (int round = 0; round < 3; ++round) {
         job.moves.push_back({Line{a, b, 1}, 60, 0, 0});

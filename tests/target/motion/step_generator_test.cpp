@@ -78,7 +78,8 @@ TEST_CASE("steps 1, 2: circles from 0.05 to 200 mm") {
                 const Run done = run(job);
                 check_steps(done);
                 for (std::size_t motor = 0; motor < 3; ++motor) CHECK(done.counts[motor] == 0);
-                // As many as the width of the circle, to and fro, and at most one turning point more.
+                // As many as the width of the circle, to and fro, and at most one turning point
+                // more.
                 for (std::size_t motor = 0; motor < 2; ++motor) {
                     const double expected = 4 * radius_mm * job.cartesian.steps_per_mm[motor];
                     CHECK(std::abs(static_cast<double>(steps_of(done, motor).size()) - expected) <=
@@ -322,8 +323,8 @@ TEST_CASE("steps 4: touching a middle between microsteps makes no step, passing 
     const Line pass{{0, 0, 0}, {0.0051, 0, 0}, 0};
     job.moves = {at_speed(pass, 10), at_speed(test::reversed(pass), 10)};
     CHECK(run(job).events.size() == 2);
-    // From the middle at 1.5 steps around a circle from 0.5 to 2.5 steps: all three are touched, and
-    // only the one at 1.5 is passed, to and fro.
+    // From the middle at 1.5 steps around a circle from 0.5 to 2.5 steps: all three are touched,
+    // and only the one at 1.5 is passed, to and fro.
     job.moves = {at_speed(Line{{0, 0, 0}, {0.015, 0, 0}, 0}, 10),
                  at_speed(circle_about({0.015, 0, 0}, 0.015, 0.01, true, 0, 0), 10)};
     const Run done = run(job);
