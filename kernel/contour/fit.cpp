@@ -103,6 +103,8 @@ std::optional<Reach> longest_biarc(const PlaneCurve& curve, double from, const C
         if (bad - good <= step_share * (good - from)) break;
         const double doubled = std::min(to, from + 2 * (good - from));
         target = good > from && doubled < bad ? doubled : (good + bad) / 2;
+        // No parameter is left between the two.
+        if (!(good < target && target < bad)) break;
     }
     return best;
 }
@@ -118,15 +120,15 @@ void fit_arcs(const PlaneCurve& curve, double from, double to, const Point2& sta
     while (at < to) {
         const auto reach = longest_biarc(curve, at, here, at + step, to, end, bound_mm);
         const double before = at;
-        if (reach) {
+        if (reach && reach->to > at) {
             out.push_back(reach->biarc.first);
             out.push_back(reach->biarc.second);
             at = reach->to;
             chord = shortest;
         } else {
-            // A corner of the curve: no tangent to keep, only the point. Chords double until it is passed.
-            at = std::min(to, at + chord);
-            chord *= 2;
+            // A corner of the curve, or the last bits of its parameter: no tangent to keep, only the
+            // point. Chords double until it is passed.
+            for (; at == before; chord *= 2) at = std::min(to, at + chord);
             out.push_back({at == to ? end : curve(at).point, 0});
         }
         step = std::max(at - before, shortest);

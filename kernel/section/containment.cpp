@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "kernel/contour/arc.h"
+#include "kernel/geometry/tolerance.h"
 
 namespace lyr {
 namespace {
@@ -96,9 +97,36 @@ Vector3 globe_direction(const Surface& surface, const Point3& point) {
            std::sin(latitude) * torus.frame.z;
 }
 
+// The point moved up along the surface, past what shares its level.
+Point3 raised(const Surface& surface, const Point3& point) {
+    const Vector3 n = normal(surface, invert(surface, point));
+    const Vector3 up = Vector3::UnitZ() - n.z() * n;
+    const double rise = up.z();
+    if (rise <= angular_resolution_rad) return point;
+    return point + 2 * resolution_mm / rise * up;
+}
+
+// Whether a point of the unit sphere is to the left of an outline, seen from outside.
+bool is_left_of(const Vector3& pole, const Outline& outline, double sense) {
+    const Vector3 x = pole.unitOrthogonal(), y = pole.cross(x);
+    const auto project = [&](const Vector3& ray) {
+        return Point2(Point2(x.dot(ray), y.dot(ray)) / (1 - pole.dot(ray)));
+    };
+    double doubled_area = 0;
+    Point2 before = project(outline.directions.back());
+    for (const Vector3& direction : outline.directions) {
+        const Point2 here = project(direction);
+        doubled_area += cross(before, here);
+        before = here;
+    }
+    // Seen from outside, projecting from the pole mirrors the globe: clockwise turns counter-clockwise.
+    return sense * doubled_area >= 0;
+}
+
 UvStep uv_step(const Surface& surface, const Point3& a, const Point3& b) {
     const Point2 from = invert(surface, a), to = invert(surface, b);
     return {from,
+            to,
             {std::remainder(to.x() - from.x(), full_turn_rad),
              std::remainder(to.y() - from.y(), full_turn_rad)}};
 }
@@ -142,10 +170,10 @@ Outline Containment::prepared(const std::vector<Point3>& points, double height_m
 bool Containment::holds(const Point3& point, double z_mm) const {
     if (std::holds_alternative<Cylinder>(surface_)) return on_cylinder(z_mm);
     if (const auto* cone = std::get_if<Cone>(&surface_)) return on_cone(*cone, z_mm);
-    if (std::holds_alternative<Sphere>(surface_)) return on_globe(point);
+    if (std::holds_alternative<Sphere>(surface_)) return on_sphere(z_mm);
     const auto* torus = std::get_if<Torus>(&surface_);
     if (!torus) return false;
-    return is_spindle(*torus) ? on_globe(point) : on_torus(point);
+    return is_spindle(*torus) ? on_spindle(point) : on_torus(point);
 }
 
 bool Containment::holds_apex() const {
@@ -171,30 +199,24 @@ bool Containment::on_cone(const Cone& cone, double z_mm) const {
     return winding != 0;
 }
 
-bool Containment::on_globe(const Point3& point) const {
-    const Vector3 pole = globe_direction(surface_, point);
-    const Vector3 x = pole.unitOrthogonal(), y = pole.cross(x);
+bool Containment::on_sphere(double z_mm) const {
     const double sense = same_sense_ ? 1 : -1;
-    const auto project = [&](const Vector3& ray) {
-        return Point2(Point2(x.dot(ray), y.dot(ray)) / (1 - pole.dot(ray)));
-    };
-    for (const Outline& outline : outlines_) {
-        double doubled_area = 0;
-        Point2 before = project(outline.directions.back());
-        for (const Vector3& direction : outline.directions) {
-            const Point2 here = project(direction);
-            doubled_area += cross(before, here);
-            before = here;
-        }
-        // Seen from outside, projecting from the pole mirrors the globe: clockwise turns
-        // counter-clockwise.
-        if (sense * doubled_area < 0) return false;
-    }
-    return true;
+    return std::all_of(outlines_.begin(), outlines_.end(), [&](const Outline& outline) {
+        const double side = outline.height_mm <= z_mm ? 1 : -1;
+        return is_left_of(side * Vector3::UnitZ(), outline, sense);
+    });
+}
+
+bool Containment::on_spindle(const Point3& point) const {
+    const Vector3 direction = globe_direction(surface_, point);
+    const double sense = same_sense_ ? 1 : -1;
+    return std::all_of(outlines_.begin(), outlines_.end(), [&](const Outline& outline) {
+        return is_left_of(direction, outline, sense);
+    });
 }
 
 bool Containment::on_torus(const Point3& point) const {
-    const Point2 at = invert(surface_, point);
+    const Point2 at = invert(surface_, raised(surface_, point));
     const double sense = (same_sense_ ? 1 : -1) * handedness(std::get<Torus>(surface_).frame);
     // axis 0: along the tube at constant u; axis 1: around at constant v.
     for (const int fixed : {0, 1}) {
@@ -203,9 +225,13 @@ bool Containment::on_torus(const Point3& point) const {
         bool face_before = false, met = false;
         for (const Outline& outline : outlines_) {
             for (const UvStep& step : outline.steps) {
+                // Each point's side is found from the point alone, so that no step between two is
+                // missed; the far side, where the angle jumps, is no crossing.
                 const double start = std::remainder(step.from[fixed] - at[fixed], full_turn_rad);
-                const double end = start + step.by[fixed];
-                if ((start <= 0) == (end <= 0)) continue;
+                const double end = std::remainder(step.to[fixed] - at[fixed], full_turn_rad);
+                if ((start <= 0) == (end <= 0) || std::abs(end - start) > full_turn_rad / 2) {
+                    continue;
+                }
                 const double where =
                     step.from[along] + step.by[along] * (-start / step.by[fixed]) - at[along];
                 const double ahead = where - full_turn_rad * std::floor(where / full_turn_rad);

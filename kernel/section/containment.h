@@ -8,8 +8,10 @@
 // are an eighth of a turn apart; an edge that the face uses in both directions, a seam, bounds nothing and is left
 // out):
 //   cylinder, cone   the component is in the face if the loops on its unbounded side wind around the axis
-//   sphere           (and the outer sheet of a torus whose tube passes over the axis) seen in stereographic projection from a point of the component, every loop of the face runs
-//                    clockwise: the point at infinity is on its left
+//   sphere           every outline lies above the component or below; seen in stereographic projection from the
+//                    sphere's highest or lowest point, whichever is on the component's side of it, it runs
+//                    clockwise: the point at infinity is on its left. So too on the outer sheet of a torus whose
+//                    tube passes over the axis, projected from the component itself
 //   torus            the nearest loop ahead along the tube's circle, or else along the axis' circle, has the
 //                    face on the near side; with neither, every loop is a hole
 
@@ -21,9 +23,9 @@
 
 namespace lyr {
 
-// From one point of an outline to the next in the torus' parameters, the short way round.
+// From one point of an outline to the next in the torus' parameters, `by` the short way round.
 struct UvStep {
-    Point2 from, by;
+    Point2 from, to, by;
 };
 
 // One closed outline, in the form that its surface's method asks for.
@@ -38,7 +40,7 @@ class Containment {
 public:
     Containment(const Model& model, FaceId face, const std::vector<double>& vertex_level_mm);
 
-    // `point` is on the component, whose plane is at z.
+    // `point` is on the component, whose plane is at z: outlines at that level are below it.
     bool holds(const Point3& point, double z_mm) const;
 
     // Whether the face of a cone reaches its apex.
@@ -47,7 +49,8 @@ public:
 private:
     bool on_cylinder(double z_mm) const;
     bool on_cone(const Cone& cone, double z_mm) const;
-    bool on_globe(const Point3& point) const;
+    bool on_sphere(double z_mm) const;
+    bool on_spindle(const Point3& point) const;
     bool on_torus(const Point3& point) const;
     Outline prepared(const std::vector<Point3>& points, double height_mm) const;
 

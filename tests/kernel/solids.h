@@ -227,6 +227,28 @@ inline Model cut_ball(double radius, double cut) {
     return b.finish();
 }
 
+// A ball of two faces that meet in its equator.
+inline Model halved_ball(double radius) {
+    Builder b;
+    const Sphere surface{Builder::frame_at({0, 0, 0}), radius};
+    const VertexId v = b.vertex(radius, 0, 0);
+    const EdgeId equator = b.circle(0, radius, v);
+    b.face(surface, true, {{{equator}}});
+    b.face(surface, true, {{{equator, true}}});
+    return b.finish();
+}
+
+// A torus of two faces that meet in the two circles at half height.
+inline Model halved_torus(double major, double minor) {
+    Builder b;
+    const Torus surface{Builder::frame_at({0, 0, 0}), major, minor};
+    const VertexId v = b.vertex(major + minor, 0, 0), w = b.vertex(major - minor, 0, 0);
+    const EdgeId outer = b.circle(0, major + minor, v), inner = b.circle(0, major - minor, w);
+    b.face(surface, true, {{{outer}}, {{inner, true}}});
+    b.face(surface, true, {{{outer, true}}, {{inner}}});
+    return b.finish();
+}
+
 inline Model torus(double major, double minor, bool seam) {
     Builder b;
     const Torus surface{Builder::frame_at({0, 0, 0}), major, minor};

@@ -105,3 +105,19 @@ TEST_CASE("fit: a corner that no arc can follow is passed, not looped on") {
     }
     CHECK(off <= 0.001);
 }
+
+TEST_CASE("fit: a span of a few bits of the parameter ends") {
+    const PlaneCurve curve = ellipse(5, 4);
+    for (double to = 1, i = 0; i < 20; ++i) {
+        to = std::nextafter(to, 2);
+        // Ends off the curve by more than the bound, as a model with loose edges has them.
+        for (const double off : {0.0, 1e-9, 0.01}) {
+            std::vector<Segment> arcs;
+            const Point2 end = curve(to).point + Vector2(off, off);
+            fit_arcs(curve, 1, to, curve(1).point, end, 0.001, arcs);
+            REQUIRE(!arcs.empty());
+            CHECK(arcs.size() < 200);
+            CHECK((arcs.back().end - end).norm() == 0);
+        }
+    }
+}

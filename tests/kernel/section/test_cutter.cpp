@@ -52,6 +52,8 @@ std::vector<Case> solids() {
             {"cut ball", cut_ball(6, 2), ball_volume},
             {"torus, seams", torus(6, 2, true), 2 * pi * pi * 6 * 4},
             {"torus, no edge", torus(6, 2, false), 2 * pi * pi * 6 * 4},
+            {"halved ball", halved_ball(5), pi * 4 / 3 * 125},
+            {"halved torus", halved_torus(6, 2), 2 * pi * pi * 6 * 4},
             {"spindle dome", spindle_dome(2, 5, 6), spindle_dome_volume(2, 5, 6)}};
 }
 
@@ -215,6 +217,14 @@ TEST_CASE(
             CHECK(section.diagnostics.empty());
             CHECK(area_of(section) >= -1e-9);
         }
+    }
+}
+
+TEST_CASE("cutter: a plane through the circle where two faces meet gives the section once") {
+    for (const double off : {0.0, 1e-12, -1e-12, 1e-9, -1e-9, 1e-7, -1e-7, 1e-5, -1e-5, 1e-3}) {
+        const Model ball = halved_ball(5), ring = halved_torus(6, 2);
+        CHECK(area_of(Cutter(ball, {}).cut(off)) == doctest::Approx(pi * 25).epsilon(1e-6));
+        CHECK(area_of(Cutter(ring, {}).cut(off)) == doctest::Approx(pi * 48).epsilon(1e-6));
     }
 }
 
