@@ -26,6 +26,7 @@ constexpr std::uint32_t most_layers = longest_payload / index_entry_bytes;
 constexpr double longest_time_s = 1e9;
 // Far beyond any layer, far below what the file's 64 bits hold.
 constexpr double largest_volume_mm3 = 1e12;
+constexpr double per_gram = 1000;
 // The summary's numbers take less in the metadata block.
 constexpr std::size_t most_summary_bytes = 512;
 
@@ -63,6 +64,11 @@ void put_block(Bytes& out, BlockType type, std::span<const std::byte> payload) {
     const std::size_t begin = begin_block(out, type);
     append(out, payload);
     end_block(out, begin);
+}
+
+// To a unit of the file: what the last bits of a sum are may differ from one machine to another.
+double rounded(double value, double per_unit) {
+    return std::round(value * per_unit) / per_unit;
 }
 
 std::span<const std::byte> bytes_of(std::string_view text) {
@@ -153,7 +159,7 @@ void Writer::Implementation::count(const EncodedLayer& layer) {
     ++totals_.layers;
     totals_.chunks += layer.totals.chunks;
     totals_.operations += layer.totals.operations;
-    volume_mm3_ += layer.totals.volume_mm3;
+    volume_mm3_ += rounded(layer.totals.volume_mm3, scale::volume);
     time_s_ += layer.state.estimated_time_s;
     all_estimated_ = all_estimated_ && layer.state.estimated_time_s > 0;
     const Bounds& box = layer.totals.motion;
@@ -201,12 +207,14 @@ Summary Writer::Implementation::summary() const {
     summary.high_x_mm = quantum_.mm(motion_.high.x);
     summary.high_y_mm = quantum_.mm(motion_.high.y);
     summary.high_z_mm = quantum_.mm(motion_.high.z);
-    summary.volume_mm3 = volume_mm3_;
+    summary.volume_mm3 = rounded(volume_mm3_, scale::volume);
     const double diameter_mm = metadata_.filament_diameter_mm;
-    summary.filament_mm = volume_mm3_ / (std::numbers::pi / 4 * diameter_mm * diameter_mm);
+    const double filament_mm = volume_mm3_ / (std::numbers::pi / 4 * diameter_mm * diameter_mm);
+    summary.filament_mm = rounded(filament_mm, scale::filament);
     constexpr double mm3_per_cm3 = 1000;
-    summary.mass_g = volume_mm3_ / mm3_per_cm3 * metadata_.filament_density_g_cm3;
-    summary.estimated_time_s = all_estimated_ ? time_s_ : 0;
+    summary.mass_g =
+        rounded(volume_mm3_ / mm3_per_cm3 * metadata_.filament_density_g_cm3, per_gram);
+    summary.estimated_time_s = all_estimated_ ? rounded(time_s_, scale::time) : 0;
     return summary;
 }
 

@@ -261,9 +261,4 @@ private:
     LayerEncoder encoder_;
 };
 
-// A path in the build folder for one test's file.
-inline std::string scratch(const std::string& name) {
-    return std::string(LYR_BUILD) + "/" + name + ".lyr";
-}
-
 }  // namespace lyr::format::test

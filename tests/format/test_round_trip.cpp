@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "files.h"
 #include "sample.h"
 
 namespace {

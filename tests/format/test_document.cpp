@@ -1,0 +1,58 @@
+// The specification's worked example is what the writer makes, byte for byte.
+
+#include <doctest/doctest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "files.h"
+#include "worked_example.h"
+
+using namespace lyr;
+using namespace lyr::format;
+
+namespace {
+
+struct Row {
+    std::size_t offset = 0;
+    test::FileBytes bytes;
+};
+
+// "| 0010 | `01 a8 00 00` | meaning |"
+std::vector<Row> rows_of_document() {
+    std::ifstream file(std::string(LYR_FIXTURES) + "/../docs/lyr-format.md");
+    std::vector<Row> rows;
+    bool inside = false;
+    for (std::string line; std::getline(file, line);) {
+        if (line.find("worked example: begin") != std::string::npos) inside = true;
+        if (line.find("worked example: end") != std::string::npos) inside = false;
+        const bool row_of_bytes = line.size() > 10 && line.substr(6, 4) == " | `";
+        if (!inside || !row_of_bytes) continue;
+        Row row;
+        std::istringstream(line.substr(2, 4)) >> std::hex >> row.offset;
+        const std::size_t open = line.find('`'), close = line.find('`', open + 1);
+        REQUIRE(close != std::string::npos);
+        std::istringstream digits(line.substr(open + 1, close - open - 1));
+        for (unsigned byte = 0; digits >> std::hex >> byte;)
+            row.bytes.push_back(static_cast<std::byte>(byte));
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+}  // namespace
+
+TEST_CASE("the worked example of docs/lyr-format.md is the writer's file, byte for byte") {
+    const std::string path = test::scratch("worked_example");
+    const Status written = test::write_worked_example(path);
+    REQUIRE(written.ok());
+    test::FileBytes documented;
+    for (const Row& row : rows_of_document()) {
+        CHECK(row.offset == documented.size());
+        documented.insert(documented.end(), row.bytes.begin(), row.bytes.end());
+    }
+    CHECK(documented == test::load(path));
+    const test::Reading reading = test::read_file(path);
+    CHECK(!reading.error);
+    CHECK(reading.given.size() == 18);
+}
