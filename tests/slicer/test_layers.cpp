@@ -33,8 +33,9 @@ TEST_CASE("slicer 2: work on any number of threads is taken in order") {
         CHECK(all);
         REQUIRE(taken.size() == 500);
         for (std::size_t i = 0; i < taken.size(); ++i) CHECK(taken[i] == i);
-        CHECK(!in_order(500, threads, [](std::size_t i) { return i; },
-                        [](std::size_t i, std::size_t) { return i < 100; }));
+        CHECK(!in_order(
+            500, threads, [](std::size_t i) { return i; },
+            [](std::size_t i, std::size_t) { return i < 100; }));
     }
 }
 

@@ -33,8 +33,9 @@ Result<Summary> print_part(const std::string& file, const std::string& lyr, Opti
     Diagnostics diagnostics;
     auto model = load(parts + file, options, diagnostics);
     if (!model) return model.error();
-    return print(std::move(*model), file, lyr, report, options,
-                 [](const char*, std::size_t, std::size_t) {}, diagnostics);
+    return print(
+        std::move(*model), file, lyr, report, options, [](const char*, std::size_t, std::size_t) {},
+        diagnostics);
 }
 
 }  // namespace
@@ -78,7 +79,8 @@ TEST_CASE("slicer 2: the same bytes for one, two and five threads") {
 }
 
 TEST_CASE("slicer 4: the part stands on the bed at its place, whichever side is up") {
-    for (const Vector3& up : {Vector3(0, 0, 1), Vector3(0, 0, -1), Vector3(1, 0, 0), Vector3(0, -1, 0)}) {
+    for (const Vector3& up :
+         {Vector3(0, 0, 1), Vector3(0, 0, -1), Vector3(1, 0, 0), Vector3(0, -1, 0)}) {
         Options options;
         options.up = up;
         options.layer_height_mm = 1;
@@ -100,8 +102,9 @@ TEST_CASE("slicer 1: a print that fails leaves the old file and nothing else") {
     REQUIRE(model);
     model->shells[0].face_count -= 1;
     model->faces.pop_back();
-    const auto failed = print(std::move(*model), "cuboid.step", lyr, folder + "report.jsonl", {},
-                              [](const char*, std::size_t, std::size_t) {}, diagnostics);
+    const auto failed = print(
+        std::move(*model), "cuboid.step", lyr, folder + "report.jsonl", {},
+        [](const char*, std::size_t, std::size_t) {}, diagnostics);
     REQUIRE(!failed);
     CHECK(failed.error().status == ExitStatus::geometry);
     CHECK(bytes_of(lyr) == "old");

@@ -1,10 +1,10 @@
 // Real files against the figures of an independent CAD kernel (fixtures/parts/reference.toml).
 
 #include <doctest/doctest.h>
+#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>
-#include <toml++/toml.h>
 
 #include "kernel/section/cutter.h"
 #include "slicer/bounds.h"
@@ -54,8 +54,8 @@ TEST_CASE("real files have the reference's solids, faces, box and sections") {
             const double z = number(0), area = number(1), length = number(2), loops = number(3);
             CAPTURE(z);
             const SectionFigures figures = figures_of(cutter.cut(z));
-            const double allowed = std::max(area_agreement * area,
-                                            0.5 * options.tolerance.total_mm * length);
+            const double allowed =
+                std::max(area_agreement * area, 0.5 * options.tolerance.total_mm * length);
             CHECK(figures.open == 0);
             CHECK(std::abs(figures.area_mm2 - area) <= allowed);
             if (loops >= 0) CHECK(figures.loops == static_cast<std::size_t>(loops));
