@@ -213,8 +213,7 @@ bool ChunkDecoder::decode_arc(bool with_z, Operation& out) {
     const auto dx = static_cast<double>(to.x - from.x), dy = static_cast<double>(to.y - from.y);
     const auto rise = static_cast<double>(sagitta);
     const double most = most_sagitta_per_chord * most_sagitta_per_chord * (dx * dx + dy * dy);
-    if (sagitta == 0 || rise * rise > most)
-        return fail("an arc has no or too large a sagitta");
+    if (sagitta == 0 || rise * rise > most) return fail("an arc has no or too large a sagitta");
     out = Arc{from, to, sagitta};
     at_ = to;
     return true;

@@ -70,16 +70,20 @@ bool Reader::Implementation::seek_layer(std::uint32_t index) {
 }
 
 bool Reader::Implementation::read_on_to_layer(std::uint32_t index) {
-    Operation passed;
-    while (!error_) {
+    if (layers_ > index) {
         if (layer_begins_ && record_.layer.index == index) return true;
-        if (layers_ > index && !layer_begins_)
-            return fail("layer " + std::to_string(std::uint64_t{index} + 1) +
-                            " has begun already, and a pipe does not go back",
-                        blocks_.offset());
-        if (!next(passed) && !error_) return fail_no_layer(index, layers_);
+        return fail("layer " + std::to_string(std::uint64_t{index} + 1) +
+                        " has begun already, and a pipe does not go back",
+                    blocks_.offset());
     }
-    return false;
+    Operation passed;
+    while (next(passed)) {
+        const auto* start = std::get_if<LayerStart>(&passed);
+        if (!start || start->index != index) continue;
+        layer_begins_ = true;
+        return true;
+    }
+    return error_ ? false : fail_no_layer(index, layers_);
 }
 
 bool Reader::Implementation::fail_no_layer(std::uint32_t index, std::uint32_t layers) {
