@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -100,6 +102,14 @@ TEST_CASE("slicer 1: a print that fails leaves the old file and nothing else") {
     Diagnostics diagnostics;
     auto model = load(parts + "cuboid.step", {}, diagnostics);
     REQUIRE(model);
+    // An upright face goes missing: every layer is open there.
+    const auto upright =
+        std::find_if(model->faces.begin(), model->faces.end(), [](const Face& face) {
+            const auto* plane = std::get_if<Plane>(&face.surface);
+            return plane && std::abs(plane->frame.z.z()) < 0.5;
+        });
+    REQUIRE(upright != model->faces.end());
+    std::iter_swap(upright, model->faces.end() - 1);
     model->shells[0].face_count -= 1;
     model->faces.pop_back();
     const auto failed = print(
