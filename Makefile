@@ -24,7 +24,7 @@ demo: all
 	@mkdir -p demo
 	$(BUILD)/stepc fixtures/parts/gearbox_base.step -o demo/gearbox_base.lyr
 	$(BUILD)/lyrrun demo/gearbox_base.lyr --simulate
-	$(BUILD)/lyrview demo/gearbox_base.lyr --layer 36 -o demo/layer-36.svg
+	$(BUILD)/lyrview demo/gearbox_base.lyr --layer 36 --no-travel -o demo/layer-36.svg
 	@echo "The picture: demo/layer-36.svg"
 
 test: all board

@@ -5,6 +5,7 @@
 #include "format/export/svg.h"
 
 #include <algorithm>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -134,6 +135,17 @@ void append_stroke(std::string& out, std::size_t group, const std::string& color
     out += "\"/>\n";
 }
 
+// Walls are what one looks for, and a fill that reaches under them would hide them.
+std::vector<std::size_t> walls_last(const std::vector<Group>& groups) {
+    std::vector<std::size_t> order(groups.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_partition(order.begin(), order.end(), [&](std::size_t i) {
+        return groups[i].role != Role::outer_wall && groups[i].role != Role::inner_wall &&
+               groups[i].role != Role::overhang_wall && groups[i].role != Role::thin_wall;
+    });
+    return order;
+}
+
 std::string strokes_text(const Strokes& strokes, const SvgOptions& options, double thin_mm) {
     std::string out = "<defs>\n";
     for (std::size_t i = 0; i < strokes.groups().size(); ++i) {
@@ -145,7 +157,7 @@ std::string strokes_text(const Strokes& strokes, const SvgOptions& options, doub
     out +=
         "</defs>\n<g transform=\"scale(1 -1)\" fill=\"none\" stroke-linecap=\"round\" "
         "stroke-linejoin=\"round\">\n";
-    for (std::size_t i = 0; i < strokes.groups().size(); ++i) {
+    for (const std::size_t i : walls_last(strokes.groups())) {
         const Group& group = strokes.groups()[i];
         out += "<g><title>" + std::string(name_of(group.role)) + "</title>\n";
         append_stroke(out, i, darker(color_of(group.role)), group.width_mm);

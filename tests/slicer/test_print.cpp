@@ -96,6 +96,7 @@ TEST_CASE("slicer 4: the part stands on the bed at its place, whichever side is 
 
 TEST_CASE("slicer 1: a print that fails leaves the old file and nothing else") {
     const std::string folder = scratch("fails/");
+    std::filesystem::remove_all(folder);
     std::filesystem::create_directories(folder);
     const std::string lyr = folder + "part.lyr";
     std::ofstream(lyr) << "old";
