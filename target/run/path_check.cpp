@@ -54,8 +54,9 @@ struct Crossing {
         return 1.0;
     }
 
-    std::optional<double> from(double share) const {
-        const double now_mm = ahead(curve.at(share)[axis]);
+    // `at_mm` is where the axis is at the share.
+    std::optional<double> from(double share, double at_mm) const {
+        const double now_mm = ahead(at_mm);
         // Other axes, due a moment later by rounding, have led the curve on past the middle.
         if (now_mm > slack_mm) return share;
         const auto found = curve.is_arc && axis <= axis_y ? on_arc(share) : on_line(share);
@@ -81,7 +82,8 @@ PathCheck::PathCheck(const AxisValues& steps_per_mm, const AxisValues& origin_mm
                      CurveSource source)
     : steps_per_mm_(steps_per_mm), origin_mm_(origin_mm), source_(std::move(source)) {
     // Where the head stands before the file's first motion.
-    curve_.from_mm = curve_.to_mm = origin_mm;
+    curve_.from_mm = curve_.to_mm = point_mm_ = origin_mm;
+    for (std::size_t i = 0; i < axis_count; ++i) step_mm_[i] = 1 / steps_per_mm[i];
 }
 
 void PathCheck::step(const DecodedStep& step) {
@@ -94,15 +96,13 @@ void PathCheck::step(const DecodedStep& step) {
     const double slack_mm = touch_steps / steps_per_mm_[step.axis];
     for (;;) {
         const Crossing crossing{curve_, step.axis, middle_mm, slack_mm, sign, reversal};
-        const std::optional<double> share = crossing.from(share_);
+        const std::optional<double> share = crossing.from(share_, point_mm_[step.axis]);
         follow_to(share.value_or(1.0), step.before);
         if (share || lost()) break;
         if (!next_curve()) break;
     }
     // The point where the step was due belongs to the new position too.
-    StepPositions after = step.before;
-    after[step.axis] += step.positive ? 1 : -1;
-    measure(curve_.at(share_), after);
+    measure(step.axis, point_mm_, step.before[step.axis] + (step.positive ? 1 : -1));
 }
 
 void PathCheck::finish(const StepPositions& positions) {
@@ -116,11 +116,15 @@ bool PathCheck::next_curve() {
     const Result<bool> more = source_(curve_);
     if (!more) status_ = more.error();
     ended_ = !more || !*more;
-    share_ = ended_ ? 1 : 0;
-    return !ended_;
+    if (ended_) return false;
+    share_ = 0;
+    point_mm_ = curve_.from_mm;
+    return true;
 }
 
 void PathCheck::follow_to(double share, const StepPositions& positions) {
+    // Nothing has changed since the last measurement here but what step() has measured.
+    if (share == share_ && share > 0) return;
     if (curve_.is_arc) {
         // Multiples of a quarter turn strictly inside are the turning points of x and y.
         const double from = (curve_.start_angle_rad + curve_.sweep_rad * share_) / (pi / 2);
@@ -132,24 +136,32 @@ void PathCheck::follow_to(double share, const StepPositions& positions) {
         }
     }
     share_ = share;
-    measure(curve_.at(share), positions);
+    point_mm_ = curve_.at(share);
+    measure(point_mm_, positions);
 }
 
 void PathCheck::measure(const AxisValues& at_mm, const StepPositions& positions) {
     double squared_mm2 = 0;
     for (std::size_t i = 0; i < axis_count; ++i) {
-        const double off_mm =
-            std::abs(at_mm[i] - position_mm(i, static_cast<double>(positions[i])));
-        const double off_steps = off_mm * steps_per_mm_[i];
-        deviation_.steps[i] = std::max(deviation_.steps[i], off_steps);
+        const double off_mm = measure(i, at_mm, positions[i]);
         if (i != axis_e) squared_mm2 += off_mm * off_mm;
-        if (off_steps <= deviation_.worst_steps) continue;
-        deviation_.worst_steps = off_steps;
-        deviation_.worst_axis = i;
-        deviation_.worst_layer = curve_.layer;
-        deviation_.worst_at_mm = at_mm;
     }
-    deviation_.distance_mm = std::max(deviation_.distance_mm, std::sqrt(squared_mm2));
+    if (squared_mm2 <= distance_mm2_) return;
+    distance_mm2_ = squared_mm2;
+    deviation_.distance_mm = std::sqrt(squared_mm2);
+}
+
+double PathCheck::measure(std::size_t axis, const AxisValues& at_mm, std::int64_t position) {
+    const double off_mm = std::abs(at_mm[axis] - position_mm(axis, static_cast<double>(position)));
+    const double off_steps = off_mm * steps_per_mm_[axis];
+    if (off_steps <= deviation_.steps[axis]) return off_mm;
+    deviation_.steps[axis] = off_steps;
+    if (off_steps <= deviation_.worst_steps) return off_mm;
+    deviation_.worst_steps = off_steps;
+    deviation_.worst_axis = axis;
+    deviation_.worst_layer = curve_.layer;
+    deviation_.worst_at_mm = at_mm;
+    return off_mm;
 }
 
 }  // namespace lyr::run

@@ -79,16 +79,20 @@ public:
 private:
     bool next_curve();
     void follow_to(double share, const StepPositions& positions);
+    // All axes at a point of the curve, and the stepping one alone after its step.
     void measure(const AxisValues& at_mm, const StepPositions& positions);
+    double measure(std::size_t axis, const AxisValues& at_mm, std::int64_t position);
     double position_mm(std::size_t axis, double steps) const {
-        return origin_mm_[axis] + steps / steps_per_mm_[axis];
+        return origin_mm_[axis] + steps * step_mm_[axis];
     }
 
-    AxisValues steps_per_mm_, origin_mm_;
+    AxisValues steps_per_mm_, step_mm_{}, origin_mm_;
     CurveSource source_;
     PathCurve curve_;
-    AxisValues last_sign_{};  // of each axis's last step
-    double share_ = 1;        // of the curve, up to which it was followed
+    AxisValues last_sign_{};   // of each axis's last step
+    double share_ = 1;         // of the curve, up to which it was followed
+    AxisValues point_mm_{};    // there
+    double distance_mm2_ = 0;  // the largest, squared
     bool ended_ = false;
     Deviation deviation_;
     Status status_ = Done{};

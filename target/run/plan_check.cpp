@@ -11,6 +11,10 @@ namespace {
 
 constexpr double ns_per_s = 1e9;
 
+double coordinate(const motion::Point& point, std::size_t axis) {
+    return axis == motion::axis_x ? point.x : axis == motion::axis_y ? point.y : point.z;
+}
+
 }  // namespace
 
 void PlanCheck::expect(std::span<const motion::PlannedMove> moves, std::span<const Shift> shifts) {
@@ -51,7 +55,7 @@ void PlanCheck::step(const DecodedStep& step) {
         return;
     }
     const Piece& piece = pieces_.front();
-    const double planned = planned_mm(piece, since_start_s(piece, planned_ns))[step.axis];
+    const double planned = planned_mm(piece, step.axis, since_start_s(piece, planned_ns));
     const std::int64_t before = step.before[step.axis];
     measure(step.axis, planned, before);
     measure(step.axis, planned, before + (step.positive ? 1 : -1));
@@ -72,23 +76,27 @@ void PlanCheck::look_until(std::int64_t time_ns, const StepPositions& positions)
         Piece& piece = pieces_.front();
         const double now_s = since_start_s(piece, time_ns);
         for (; piece.looked < piece.look_count && piece.looks_s[piece.looked] <= now_s;
-             ++piece.looked) {
-            const AxisValues planned = planned_mm(piece, piece.looks_s[piece.looked]);
-            for (std::size_t i = 0; i < planned.size(); ++i) measure(i, planned[i], positions[i]);
-        }
+             ++piece.looked)
+            for (std::size_t i = 0; i < positions.size(); ++i)
+                measure(i, planned_mm(piece, i, piece.looks_s[piece.looked]), positions[i]);
         const bool next_began = pieces_.size() > 1 && since_start_s(pieces_[1], time_ns) >= 0;
         if (!next_began || piece.looked < piece.look_count) return;
         pieces_.pop_front();
     }
 }
 
-AxisValues PlanCheck::planned_mm(const Piece& piece, double time_s) {
+double PlanCheck::planned_mm(const Piece& piece, std::size_t axis, double time_s) {
     const motion::Profile& profile = piece.move.profile;
     const double distance_mm = profile.distance_at(std::clamp(time_s, 0.0, profile.duration_s));
-    const motion::Point point = motion::point_at(piece.move.path, distance_mm);
     const double share = distance_mm / profile.length_mm;
-    return {point.x, point.y, point.z,
-            piece.e_start_mm + share * motion::advance_of(piece.move.path)};
+    if (axis == motion::axis_e)
+        return piece.e_start_mm + share * motion::advance_of(piece.move.path);
+    if (axis != motion::axis_z && std::holds_alternative<motion::Arc>(piece.move.path)) {
+        const motion::Point point = motion::point_at(piece.move.path, distance_mm);
+        return axis == motion::axis_x ? point.x : point.y;
+    }
+    const double from_mm = coordinate(motion::start_of(piece.move.path), axis);
+    return from_mm + share * (coordinate(motion::end_of(piece.move.path), axis) - from_mm);
 }
 
 void PlanCheck::measure(std::size_t axis, double planned_mm, std::int64_t position) {

@@ -43,7 +43,7 @@ private:
     void append(const motion::PlannedMove& move);
     void look_until(std::int64_t time_ns, const StepPositions& positions);
     static double since_start_s(const Piece& piece, std::int64_t time_ns);
-    static AxisValues planned_mm(const Piece& piece, double time_s);
+    static double planned_mm(const Piece& piece, std::size_t axis, double time_s);
     void measure(std::size_t axis, double planned_mm, std::int64_t position);
 
     AxisValues steps_per_mm_, origin_mm_;
