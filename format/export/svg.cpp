@@ -5,7 +5,6 @@
 #include "format/export/svg.h"
 
 #include <algorithm>
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
