@@ -61,7 +61,7 @@ std::string text_of(Range range) {
            (range.open_low ? " up to " : " to ") + plain(range.high);
 }
 
-Key number(std::string path, Range range, std::function<void(Draft&, double)> store) {
+Key number(std::string path, Range range, const std::function<void(Draft&, double)>& store) {
     return {std::move(path), false, false,
             [range, store](const toml::node& node, Draft& draft) -> Complaint {
                 const std::optional<double> value = number_in(node, range);
@@ -76,7 +76,7 @@ Key required(Key key) {
     return key;
 }
 
-Key text(std::string path, std::function<void(Draft&, const std::string&)> store) {
+Key text(std::string path, const std::function<void(Draft&, const std::string&)>& store) {
     return {std::move(path), false, false,
             [store](const toml::node& node, Draft& draft) -> Complaint {
                 const auto* value = node.as_string();
@@ -87,7 +87,7 @@ Key text(std::string path, std::function<void(Draft&, const std::string&)> store
             }};
 }
 
-Key flag(std::string path, std::function<void(Draft&, bool)> store) {
+Key flag(std::string path, const std::function<void(Draft&, bool)>& store) {
     return {std::move(path), false, false,
             [store](const toml::node& node, Draft& draft) -> Complaint {
                 const auto* value = node.as_boolean();

@@ -30,7 +30,7 @@ Status MockChip::write(LineMask changed, LineMask levels) {
 
 Status MockChip::release() {
     if (released_) return Done{};
-    const Status low = write(all_lines(line_count_), 0);
+    Status low = write(all_lines(line_count_), 0);
     released_ = true;
     return low;
 }

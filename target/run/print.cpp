@@ -102,7 +102,7 @@ Result<bool> drain(Executor& executor, Shared& shared) {
             continue;
         }
         events = events.first(std::min(batch, events.size()));
-        const Result<bool> executed = executor.execute(events);
+        Result<bool> executed = executor.execute(events);
         if (!executed || !*executed) return executed;
         shared.time_ns.store(executor.time_ns(), std::memory_order_relaxed);
         shared.ring.drop(events.size());

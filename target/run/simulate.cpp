@@ -80,13 +80,13 @@ Status Simulation::run(ReplaceFile* trace) {
     gpio::GpioChip& chip = tracing ? static_cast<gpio::GpioChip&>(*tracing) : mock_;
     const StopRequests none{0};
     Executor executor(chip, clock_, executor_timing(job_.printer), none);
-    const Status pumped = pump(executor);
+    Status pumped = pump(executor);
     print_time_s_ = static_cast<double>(executor.time_ns()) / ns_per_s;
     if (!pumped) return pumped;
     path_check_.finish(decoder_.positions());
     plan_check_.finish(decoder_.positions());
     if (!path_check_.status()) return path_check_.status();
-    const Status released = chip.release();
+    Status released = chip.release();
     if (tracing) tracing->finish();
     return released;
 }

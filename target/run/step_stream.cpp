@@ -41,7 +41,7 @@ StepStream::StepStream(Interpreter interpreter, motion::Planner planner,
                        motion::StepGenerator generator)
     : interpreter_(std::move(interpreter)),
       planner_(std::move(planner)),
-      generator_(std::move(generator)),
+      generator_(generator),
       events_(batch_events) {}
 
 Result<bool> StepStream::next(std::vector<Step>& steps) {
