@@ -131,6 +131,9 @@ int main_of(int argc, char** argv) {
         if (error.get_exit_code() == 0) return app.exit(error);
         return fail_usage(error.what());
     }
+    // The whole file is checked before the first motion, and then read again.
+    if (arguments.lyr_path == "-")
+        return fail_usage("a print is read more than once: give a file, not standard input");
     if (!arguments.simulate && arguments.printer_path.empty())
         return fail_usage("to print, --printer FILE must say what the machine is");
     if (!arguments.simulate && (!arguments.trace_path.empty() || arguments.json))

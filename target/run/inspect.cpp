@@ -42,7 +42,8 @@ Box box_of(const PathCurve& curve) {
     return box;
 }
 
-Status check_range(const Box& box, const PathCurve& curve, const config::Printer& printer) {
+Status check_range(const Box& box, const PathCurve& curve, const std::string& path,
+                   const config::Printer& printer) {
     for (const std::size_t i : {axis_x, axis_y, axis_z}) {
         const config::Axis& axis = printer.axes[i];
         const bool below = box.low_mm[i] < axis.min_mm - rounding_mm;
@@ -55,6 +56,7 @@ Status check_range(const Box& box, const PathCurve& curve, const config::Printer
             below ? box.low_mm[i] : box.high_mm[i], std::string(axis_names[i]).c_str(), axis.min_mm,
             axis.max_mm);
         Diagnostic error{Severity::error, ExitStatus::machine, text, {}};
+        error.where.file = path;
         error.where.layer = static_cast<int>(curve.layer) + 1;
         return error;
     }
@@ -90,7 +92,7 @@ Result<Inspection> inspect(const std::string& path, const config::Printer& print
         if (!more) return more.error();
         if (!*more) break;
         const Box box = box_of(curve);
-        if (const Status in_range = check_range(box, curve, printer); !in_range)
+        if (const Status in_range = check_range(box, curve, path, printer); !in_range)
             return in_range.error();
         all.include(box.low_mm);
         all.include(box.high_mm);

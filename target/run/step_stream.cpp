@@ -4,6 +4,8 @@
 
 #include <bit>
 
+#include "target/run/inspect.h"
+
 namespace lyr::run {
 namespace {
 
@@ -28,18 +30,19 @@ void append_steps(const motion::StepEvent& event, std::vector<Step>& steps) {
 
 Result<StepStream> StepStream::open(const std::string& path, const config::Printer& printer,
                                     double filament_diameter_mm) {
-    Result<format::Reader> reader = format::Reader::open(path, format::ReadOptions{false, false});
+    Result<format::Reader> reader = open_file(path);
     if (!reader) return reader.error();
     Result<motion::Planner> planner = motion::Planner::create(motion_limits(printer));
     if (!planner) return planner.error();
     const motion::Point origin{printer.start_mm[0], printer.start_mm[1], printer.start_mm[2]};
-    return StepStream(Interpreter(std::move(*reader), printer, filament_diameter_mm),
+    return StepStream(path, Interpreter(std::move(*reader), printer, filament_diameter_mm),
                       std::move(*planner), motion::StepGenerator(kinematics_of(printer), origin));
 }
 
-StepStream::StepStream(Interpreter interpreter, motion::Planner planner,
+StepStream::StepStream(std::string path, Interpreter interpreter, motion::Planner planner,
                        motion::StepGenerator generator)
-    : interpreter_(std::move(interpreter)),
+    : path_(std::move(path)),
+      interpreter_(std::move(interpreter)),
       planner_(std::move(planner)),
       generator_(generator),
       events_(batch_events) {}
@@ -82,7 +85,12 @@ Status StepStream::plan() {
         }
         if (const auto* rest = std::get_if<Rest>(&*held_)) planner_.dwell(rest->time_s);
         if (const auto* move = std::get_if<motion::Move>(&*held_))
-            if (const Status pushed = planner_.push(*move); !pushed) return pushed.error();
+            if (const Status pushed = planner_.push(*move); !pushed) {
+                Diagnostic error = pushed.error();
+                error.where.file = path_;
+                error.where.layer = static_cast<int>(move->tag);
+                return error;
+            }
         held_.reset();
     }
     return Done{};

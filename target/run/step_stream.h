@@ -34,10 +34,12 @@ public:
     std::uint32_t layer() const { return layer_; }
 
 private:
-    StepStream(Interpreter interpreter, motion::Planner planner, motion::StepGenerator generator);
+    StepStream(std::string path, Interpreter interpreter, motion::Planner planner,
+               motion::StepGenerator generator);
 
     Status plan();
 
+    std::string path_;  // for messages
     Interpreter interpreter_;
     motion::Planner planner_;
     motion::StepGenerator generator_;

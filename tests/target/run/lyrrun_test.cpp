@@ -77,6 +77,7 @@ TEST_CASE("lyrrun: what is wrong comes as one line and with its status") {
     check_failure(lyrrun("/dev/null --simulate"), 3, "/dev/null");
     check_failure(lyrrun("/tmp --simulate"), 3, "/tmp");
     check_failure(lyrrun(""), 2, "--help");
+    check_failure(lyrrun("- --simulate"), 2, "standard input");
     check_failure(lyrrun(good), 2, "--printer");
     check_failure(lyrrun(good + " --simulate --colour"), 2, "--colour");
     check_failure(lyrrun(good + " --trace x.vcd --printer x.toml"), 2, "--simulate");
