@@ -20,6 +20,8 @@ inline constexpr std::int64_t hatch_limit = std::int64_t{3} << 30;
 inline constexpr int direction_bits = 30, offset_bits = 24;
 // |offset + k x pitch| stays below this: hatch_limit in its unit.
 inline constexpr std::int64_t offset_limit = hatch_limit << offset_bits;
+// Rows have numbers within this: twice as many as a hatch may have in front of its first one.
+inline constexpr std::int64_t row_limit = std::int64_t{1} << 34;
 
 struct Grid {
     std::int64_t a = std::int64_t{1} << direction_bits, b = 0;
@@ -37,9 +39,9 @@ struct Grid {
 
     // None: out of range.
     std::optional<std::int64_t> row(std::int64_t k) const {
-        if (k != 0 && pitch != 0 &&
-            (pitch > 0 ? pitch : -pitch) > 2 * offset_limit / (k > 0 ? k : -k))
-            return std::nullopt;
+        if (k < -row_limit || k > row_limit) return std::nullopt;
+        const std::int64_t far = k < 0 ? -k : k, step = pitch < 0 ? -pitch : pitch;
+        if (far != 0 && step > 2 * offset_limit / far) return std::nullopt;
         const std::int64_t at = offset + k * pitch;
         if (at < -offset_limit || at > offset_limit) return std::nullopt;
         return (at + (std::int64_t{1} << (offset_bits - 1))) >> offset_bits;

@@ -194,7 +194,7 @@ Status Writer::Implementation::copy_layers() {
             left -= wanted;
         }
     }
-    file_.write(waiting_);
+    if (!waiting_.empty()) file_.write(waiting_);
     return Done{};
 }
 

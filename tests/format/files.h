@@ -169,7 +169,7 @@ inline FileBytes raw_file(const FileBytes& operations, std::uint32_t count) {
     put_little(end.payload, 1, 4);
     put_little(end.payload, 1, 8);
     put_little(end.payload, count, 8);
-    put_little(end.payload, 0, 16);
+    end.payload.resize(36);  // join() has the rest
     return join(prologue, {{1, {}}, layer, chunk, {4, {}}, end});
 }
 
