@@ -228,6 +228,24 @@ TEST_CASE("cutter: a plane through the circle where two faces meet gives the sec
     }
 }
 
+TEST_CASE("cutter: at the saddles of a standing torus the two lobes touch and each is cut once") {
+    for (const bool seam : {true, false}) {
+        for (const double turn : {pi / 2, -pi / 2}) {
+            const Model model = transformed(
+                torus(6, 2, seam), Eigen::Affine3d(Eigen::AngleAxisd(turn, Vector3::UnitX())));
+            const Cutter cutter(model, {});
+            for (const double saddle : {-4.0, 4.0}) {
+                const double near = area_of(cutter.cut(saddle + 1e-6));
+                for (const double off : {0.0, 1e-15, -1e-15, 1e-12, -1e-12, 1e-9, -1e-9}) {
+                    const Section section = cutter.cut(saddle + off);
+                    CHECK(section.open == 0);
+                    CHECK(area_of(section) == doctest::Approx(near).epsilon(1e-3));
+                }
+            }
+        }
+    }
+}
+
 TEST_CASE("cutter: circles stay circles") {
     const Tolerance tolerance{0.005};
     for (const Side side : {Side::seam, Side::halves, Side::two_loops}) {
