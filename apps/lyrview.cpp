@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <string>
 
 #include "base/diagnostic.h"
@@ -18,7 +19,7 @@ using namespace lyr;
 
 struct Arguments {
     std::string lyr_path, output_path;
-    std::uint32_t layer = 0;  // from 1; 0: none
+    std::uint32_t layer = 0;  // from 1
     bool info = false, no_travel = false;
 };
 
@@ -39,12 +40,14 @@ void add_options(CLI::App& app, Arguments& arguments) {
     app.footer(examples);
     app.set_version_flag("--version", "lyrview " LYR_VERSION);
     app.add_option("print", arguments.lyr_path, "The .lyr file that stepc wrote; -: standard input")
+        ->type_name("FILE")
         ->required();
     app.add_flag("--info", arguments.info, "Sum the file up on standard output");
     app.add_option("--layer", arguments.layer, "Draw this layer, 1 to the number of layers")
-        ->check(CLI::Range(1u, 0xffffffffu));
+        ->type_name("N");
     app.add_option("-o,--output", arguments.output_path,
-                   "The picture to write (SVG); without it, or as -: standard output");
+                   "The picture to write (SVG); without it, or as -: standard output")
+        ->type_name("FILE");
     app.add_flag("--no-travel", arguments.no_travel, "Leave out the ways without extrusion");
 }
 
@@ -99,10 +102,15 @@ int main_of(int argc, char** argv) {
         if (error.get_exit_code() == 0) return app.exit(error);
         return fail_usage(error.what());
     }
-    const bool draws = arguments.layer > 0;
+    const bool draws = app.count("--layer") > 0;
     if (draws == arguments.info) return fail_usage("say either --info or --layer N");
+    if (draws && arguments.layer == 0)
+        return fail_usage("there is no layer 0: the one on the bed is layer 1");
     if (!draws && (!arguments.output_path.empty() || arguments.no_travel))
         return fail_usage("-o and --no-travel need --layer N");
+    std::error_code none;
+    if (std::filesystem::equivalent(arguments.lyr_path, arguments.output_path, none))
+        return fail_usage("the picture would replace the print: give -o another name");
     const Status done = draws ? draw_layer(arguments) : show_info(arguments);
     return done ? static_cast<int>(ExitStatus::ok) : fail(done.error());
 }

@@ -26,6 +26,8 @@ bool Reader::Implementation::fail(const std::string& what, std::uint64_t offset,
 }
 
 std::string Reader::Implementation::place(std::uint64_t offset) const {
+    // What is wrong at the very beginning is wrong with the file as a whole.
+    if (offset == 0) return "";
     std::string text;
     if (where_ == Where::in_layer || where_ == Where::in_chunk) {
         const std::uint32_t chunks = record_.layer.totals.chunks;
