@@ -284,8 +284,9 @@ void LayerEncoder::Implementation::include_arc(double center_x, double center_y,
         constexpr auto limit = static_cast<double>(coordinate_limit);
         return std::llround(std::clamp(value, -limit, limit));
     };
-    for (double turn = std::ceil(low); turn <= high; ++turn) {
-        const int side = static_cast<int>(turn) & 3;
+    const int last = static_cast<int>(std::floor(high));
+    for (int turn = static_cast<int>(std::ceil(low)); turn <= last; ++turn) {
+        const int side = turn & 3;
         const double reach = side < 2 ? radius : -radius;
         const double x = center_x + (side % 2 == 0 ? reach : 0);
         const double y = center_y + (side % 2 == 1 ? reach : 0);

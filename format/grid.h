@@ -1,9 +1,9 @@
 // The grid of parallel rows on which hatch runs lie, and where a point of it is: in whole numbers,
 // so that every reader finds the same quantum.
 //
-// With direction (a, b) in 2^-30 (a unit vector, rounded), row k lies w = floor((offset + k x pitch)
-// / 2^24 + 1/2) quanta to the left of the direction's line through the origin, and the point u
-// quanta along it is
+// With direction (a, b) in 2^-30 (a unit vector, rounded), row k lies
+//     w = floor((offset + k x pitch) / 2^24 + 1/2)
+// quanta to the left of the direction's line through the origin, and the point u quanta along it is
 //     x = floor((u a - w b) / 2^30 + 1/2),  y = floor((u b + w a) / 2^30 + 1/2).
 // |u|, |w| <= 3 x 2^30 (which holds every point within coordinate_limit), so 64 bits are enough.
 

@@ -4,10 +4,11 @@
 // Contract
 //  1. parse(print(metadata, summary)) = (metadata, summary), configuration and thumbnails apart;
 //     numbers are printed so that they read back as the same double.
-//  2. parse refuses lines without '=' and numbers that are none, naming the line.
+//  2. parse refuses lines without '=' and values that are no measure, naming the line.
 
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,6 +16,12 @@
 #include "format/metadata.h"
 
 namespace lyr::format {
+
+// A number that metadata may have: nothing that it measures is larger than this.
+inline constexpr double largest_measure = 1e12;
+inline bool is_measure(double value) {
+    return std::abs(value) <= largest_measure;
+}
 
 // In the library lyr_format_writer.
 std::string print_metadata(const Metadata& metadata, const Summary& summary);

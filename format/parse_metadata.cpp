@@ -55,8 +55,8 @@ bool parse_number(std::string_view text, Number& value) {
     return error == std::errc() && end == text.data() + text.size();
 }
 
-bool parse_finite(std::string_view text, double& value) {
-    return parse_number(text, value) && std::isfinite(value);
+bool parse_measure(std::string_view text, double& value) {
+    return parse_number(text, value) && is_measure(value);
 }
 
 std::string unescaped(std::string_view text) {
@@ -82,9 +82,9 @@ bool take(std::string_view key, std::string_view text, ParsedMetadata& parsed) {
     if (const auto* known = find_key(text_keys, key)) {
         metadata.*known->field = unescaped(text);
     } else if (const auto* number = find_key(number_keys, key)) {
-        return parse_finite(text, metadata.*number->field);
+        return parse_measure(text, metadata.*number->field);
     } else if (const auto* counted = find_key(summary_keys, key)) {
-        return parse_finite(text, parsed.summary.*counted->field);
+        return parse_measure(text, parsed.summary.*counted->field);
     } else if (key == layers_key) {
         return parse_number(text, parsed.summary.layers);
     } else if (key == object_key) {

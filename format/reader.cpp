@@ -1,5 +1,5 @@
-// A loop over blocks around the decoder of chunks. Every check has its message here; the parts below
-// only say that something is wrong.
+// A loop over blocks around the decoder of chunks. Every check has its message here; the parts
+// below only say that something is wrong.
 
 #include <array>
 #include <cstring>

@@ -255,6 +255,10 @@ Bytes Writer::Implementation::back(std::uint64_t front_bytes, std::uint64_t& tot
 
 Result<FileTotals> Writer::Implementation::finish() {
     totals_.summary = summary();
+    const Summary& sum = totals_.summary;
+    if (!is_measure(sum.volume_mm3) || !is_measure(sum.filament_mm) || !is_measure(sum.mass_g) ||
+        !is_measure(sum.estimated_time_s))
+        return usage("the print is too large: its volume, filament or time is out of range", path_);
     const Bytes head = front();
     const Bytes tail = back(head.size(), totals_.bytes);
     file_.write(head);
@@ -273,9 +277,9 @@ Result<Writer> Writer::create(const std::string& path, Quantum quantum, Metadata
     if (quantum.nm == 0 || quantum.nm > coarsest_quantum_nm)
         return usage("the quantum must be 1 to " + std::to_string(coarsest_quantum_nm) + " nm",
                      path);
-    if (!(metadata.filament_diameter_mm > 0) || !std::isfinite(metadata.filament_diameter_mm) ||
-        !std::isfinite(metadata.filament_density_g_cm3) || !std::isfinite(metadata.tolerance_mm))
-        return usage("the metadata has a number that is not finite, or no filament diameter", path);
+    if (!(metadata.filament_diameter_mm > 0) || !is_measure(metadata.filament_diameter_mm) ||
+        !is_measure(metadata.filament_density_g_cm3) || !is_measure(metadata.tolerance_mm))
+        return usage("the metadata has a number out of range, or no filament diameter", path);
     for (const auto& [key, value] : metadata.extra)
         if (!is_extra_key(key)) return usage("metadata cannot have the key '" + key + "'", path);
     if (print_metadata(metadata, {}).size() + most_summary_bytes > longest_buffered_payload)

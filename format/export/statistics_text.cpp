@@ -1,5 +1,6 @@
 // The text of lyrview --info.
 
+#include <cmath>
 #include <cstdarg>
 #include <cstdio>
 
@@ -39,7 +40,7 @@ std::string grouped(std::uint64_t number) {
 }
 
 std::string duration(double time_s) {
-    const auto whole_s = static_cast<std::uint64_t>(time_s + 0.5);
+    const auto whole_s = static_cast<std::uint64_t>(std::llround(time_s));
     char text[64];
     std::snprintf(text, sizeof text, "%llu h %02llu min %02llu s",
                   static_cast<unsigned long long>(whole_s / 3600),

@@ -1,8 +1,8 @@
 // A layer of a .lyr file as an SVG picture: what is extruded in its real width, arcs as arcs.
 //
 // Contract
-//  1. The picture's unit is the millimetre of the bed, y upwards; ends of lines and arcs and centres
-//     of circles are the file's own, to the last digit of its quantum.
+//  1. The picture's unit is the millimetre of the bed, y upwards; ends of lines and arcs and
+//     centres of circles are the file's own, to the last digit of its quantum.
 //  2. A line is an L, an arc an A, a full circle a <circle>, in groups of one role and width that
 //     follow each other as in the file, walls over the rest; within a group, circles come last.
 //  3. The picture depends on the file and the options only; nothing else is needed to show it, and

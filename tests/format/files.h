@@ -1,5 +1,5 @@
-// Files of the format's tests: as bytes, as what a reader gives out of them, and taken apart into blocks
-// by code that the room does not use.
+// Files of the format's tests: as bytes, as what a reader gives out of them, and taken apart into
+// blocks by code that the room does not use.
 
 #pragma once
 

@@ -1,5 +1,6 @@
-// libFuzzer target: whatever the bytes, reading them ends with the end of the print or an error, and
-// positions stay within their limit. Checksums are put right first, so that mutations get past them.
+// libFuzzer target: whatever the bytes, reading them ends with the end of the print or an error,
+// and positions stay within their limit. Checksums are put right first, so that mutations get past
+// them.
 
 #include <sys/mman.h>
 #include <unistd.h>

@@ -321,3 +321,25 @@ TEST_CASE("files that are no .lyr file are refused in one line") {
     CHECK(missing.error().status == ExitStatus::input);
     CHECK(!Reader::open(std::string(LYR_BUILD)).ok());
 }
+
+TEST_CASE("metadata 2: lines that are no key=value and values that are no measure are refused") {
+    const FileBytes file = small_file();
+    const auto with_metadata = [&](const std::string& text) {
+        std::vector<test::Block> blocks = test::split(file);
+        blocks[0].payload.clear();
+        for (const char c : text) blocks[0].payload.push_back(static_cast<std::byte>(c));
+        return test::read_bytes(test::join(file, blocks));
+    };
+    CHECK(!with_metadata("").error);
+    CHECK(!with_metadata("layers=3\ntime_s=1e12\nunknown=\n=").error);
+    for (const char* bad : {"layers", "time_s=", "time_s=1e13", "time_s=-2e12", "time_s=nan",
+                            "time_s=inf", "time_s=1 ", "layers=-1", "layers=3.0", "a=b\n\n"}) {
+        const test::Reading reading = with_metadata(bad);
+        INFO(bad);
+        REQUIRE(reading.error.has_value());
+        CHECK(!reading.opened);
+        CHECK(reading.error->message.find("of the metadata") != std::string::npos);
+    }
+    // Stated otherwise than counted: found at the end.
+    CHECK(with_metadata("layers=4").error.has_value());
+}
