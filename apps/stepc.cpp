@@ -1,5 +1,6 @@
 // stepc: slices a STEP file into a .lyr print, or reports sections at given heights.
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -136,25 +137,36 @@ void show(const Diagnostics& diagnostics) {
     }
 }
 
+bool is_standard_output(const std::string& path) {
+    struct stat named {
+    }, standard{};
+    return ::stat(path.c_str(), &named) == 0 && ::fstat(STDOUT_FILENO, &standard) == 0 &&
+           named.st_dev == standard.st_dev && named.st_ino == standard.st_ino;
+}
+
 void show_summary(const Arguments& arguments, const slicer::Summary& summary, std::size_t warnings,
                   double seconds) {
+    // A print that goes to standard output must not have text behind it.
+    const bool to_pipe = is_standard_output(arguments.heights_path.empty() ? arguments.lyr_path
+                                                                           : arguments.report_path);
+    std::FILE* out = to_pipe ? stderr : stdout;
     const bool sections = !arguments.heights_path.empty();
-    std::printf("%s: %zu solid%s, %zu faces\n", arguments.step_path.c_str(), summary.solids,
-                summary.solids == 1 ? "" : "s", summary.faces);
-    std::printf("%zu %s: %zu contours (%zu full circles), %zu lines, %zu arcs\n", summary.layers,
-                sections ? "sections" : "layers", summary.contours, summary.circles, summary.lines,
-                summary.arcs);
+    std::fprintf(out, "%s: %zu solid%s, %zu faces\n", arguments.step_path.c_str(), summary.solids,
+                 summary.solids == 1 ? "" : "s", summary.faces);
+    std::fprintf(out, "%zu %s: %zu contours (%zu full circles), %zu lines, %zu arcs\n",
+                 summary.layers, sections ? "sections" : "layers", summary.contours,
+                 summary.circles, summary.lines, summary.arcs);
     if (sections) {
-        std::printf("%s", arguments.report_path.c_str());
+        std::fprintf(out, "%s", arguments.report_path.c_str());
     } else {
         const auto size = summary.box.sizes();
-        std::printf("%.3f x %.3f x %.3f mm at %g mm a layer, tolerance %g mm\n", size.x(), size.y(),
-                    size.z(), arguments.options.layer_height_mm,
-                    arguments.options.tolerance.total_mm);
-        std::printf("%s: %llu bytes", arguments.lyr_path.c_str(),
-                    static_cast<unsigned long long>(summary.bytes));
+        std::fprintf(out, "%.3f x %.3f x %.3f mm at %g mm a layer, tolerance %g mm\n", size.x(),
+                     size.y(), size.z(), arguments.options.layer_height_mm,
+                     arguments.options.tolerance.total_mm);
+        std::fprintf(out, "%s: %llu bytes", arguments.lyr_path.c_str(),
+                     static_cast<unsigned long long>(summary.bytes));
     }
-    std::printf(", %.2f s, %zu warning%s\n", seconds, warnings, warnings == 1 ? "" : "s");
+    std::fprintf(out, ", %.2f s, %zu warning%s\n", seconds, warnings, warnings == 1 ? "" : "s");
 }
 
 Result<slicer::Summary> run(const Arguments& arguments, ProgressLine& line,

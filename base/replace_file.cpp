@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 
 namespace lyr {
@@ -19,18 +20,32 @@ Diagnostic cannot_write(const std::string& path, int error) {
             {.file = path}};
 }
 
+// Names of open descriptors are links to whatever is open: renaming would replace the link.
+bool names_descriptor(const std::string& path) {
+    return path == "/dev/stdout" || path == "/dev/stderr" || path.starts_with("/dev/fd/") ||
+           path.starts_with("/proc/");
+}
+
+// The file that a link leads to, so that the link stays and its target is replaced.
+std::string resolved(const std::string& path) {
+    const std::unique_ptr<char, decltype(&std::free)> real(::realpath(path.c_str(), nullptr),
+                                                           &std::free);
+    return real ? real.get() : path;
+}
+
 }  // namespace
 
 Result<ReplaceFile> ReplaceFile::open(const std::string& path) {
     struct stat status {};
     const bool exists = ::stat(path.c_str(), &status) == 0;
     if (exists && S_ISDIR(status.st_mode)) return cannot_write(path, EISDIR);
-    const bool direct = exists && !S_ISREG(status.st_mode);
+    const bool direct = names_descriptor(path) || (exists && !S_ISREG(status.st_mode));
     if (exists && !direct && ::access(path.c_str(), W_OK) != 0) return cannot_write(path, errno);
-    const std::string temporary = direct ? "" : path + '.' + std::to_string(::getpid()) + ".part";
+    const std::string target = direct ? path : resolved(path);
+    const std::string temporary = direct ? "" : target + '.' + std::to_string(::getpid()) + ".part";
     std::FILE* file = std::fopen(direct ? path.c_str() : temporary.c_str(), "wbe");
     if (!file) return cannot_write(path, errno);
-    return ReplaceFile(path, temporary, file);
+    return ReplaceFile(target, temporary, file);
 }
 
 ReplaceFile::ReplaceFile(std::string path, std::string temporary, std::FILE* file)
@@ -48,7 +63,7 @@ ReplaceFile::~ReplaceFile() {
 }
 
 void ReplaceFile::write(std::span<const std::byte> bytes) {
-    std::fwrite(bytes.data(), 1, bytes.size(), file_);
+    if (!bytes.empty()) std::fwrite(bytes.data(), 1, bytes.size(), file_);
 }
 
 void ReplaceFile::write(std::string_view text) {

@@ -3,7 +3,9 @@
 // Contract
 //  1. Until commit() succeeds, the file at `path` is as it was before.
 //  2. Whatever is not committed is removed, also when the program is ended by an exception.
-//  3. A path that is not a regular file (/dev/stdout, a pipe) is written directly.
+//  3. A path that is not a regular file (a pipe, a device) or names an open descriptor (/dev/stdout) is written
+//     directly.
+//  4. Through a symbolic link the file that it leads to is replaced; the link stays.
 
 #pragma once
 

@@ -1,5 +1,7 @@
 #include <doctest/doctest.h>
+#include <unistd.h>
 
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -63,6 +65,42 @@ TEST_CASE("replace file 3: a device is written directly") {
     file->write("gone");
     CHECK(file->commit());
     CHECK(fs::is_character_file("/dev/null"));
+}
+
+TEST_CASE("replace file 3: /dev/stdout stays a link when standard output is a regular file") {
+    const fs::path folder = fresh_folder("stdout");
+    const int saved = ::dup(STDOUT_FILENO);
+    REQUIRE(std::freopen((folder / "caught").c_str(), "w", stdout));
+    const fs::path before = fs::read_symlink("/dev/stdout");
+    bool written = false;
+    {
+        auto file = ReplaceFile::open("/dev/stdout");
+        if (file) {
+            file->write("text");
+            written = file->commit().ok();
+        }
+    }
+    ::dup2(saved, STDOUT_FILENO);
+    ::close(saved);
+    CHECK(written);
+    REQUIRE(fs::is_symlink("/dev/stdout"));
+    CHECK(fs::read_symlink("/dev/stdout") == before);
+    CHECK(text_of(folder / "caught") == "text");
+    CHECK(entries(folder) == 1);
+}
+
+TEST_CASE("replace file 4: a link stays and its target is replaced") {
+    const fs::path folder = fresh_folder("link"), target = folder / "target",
+                   link = folder / "link";
+    std::ofstream(target) << "old";
+    fs::create_symlink("target", link);
+    auto file = ReplaceFile::open(link);
+    REQUIRE(file);
+    file->write("new");
+    CHECK(file->commit());
+    CHECK(fs::is_symlink(link));
+    CHECK(text_of(target) == "new");
+    CHECK(entries(folder) == 2);
 }
 
 TEST_CASE("replace file: errors are of output and name the path") {
