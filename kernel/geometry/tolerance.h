@@ -23,6 +23,11 @@ struct Tolerance {
 // to nobody, ten times coarser would merge real features of micro-machined parts.
 inline constexpr double resolution_mm = 1e-7;
 
+// A plane is not cut closer than this to a height where the section changes its topology, but this far above or
+// below it: a hundred times resolution_mm, so that round-off in edges cannot exchange what the topology orders,
+// and a hundredth of a micrometre, which no printer can tell from the height asked for.
+inline constexpr double level_clearance_mm = 1e-5;
+
 // Directions closer than this are parallel: resolution_mm seen from a metre away.
 inline constexpr double angular_resolution_rad = 1e-10;
 

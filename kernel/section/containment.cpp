@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "kernel/contour/arc.h"
-#include "kernel/geometry/tolerance.h"
 
 namespace lyr {
 namespace {
@@ -95,15 +94,6 @@ Vector3 globe_direction(const Surface& surface, const Point3& point) {
     return std::cos(latitude) *
                (std::cos(around) * torus.frame.x + std::sin(around) * torus.frame.y) +
            std::sin(latitude) * torus.frame.z;
-}
-
-// The point moved up along the surface, past what shares its level.
-Point3 raised(const Surface& surface, const Point3& point) {
-    const Vector3 n = normal(surface, invert(surface, point));
-    const Vector3 up = Vector3::UnitZ() - n.z() * n;
-    const double rise = up.z();
-    if (rise <= angular_resolution_rad) return point;
-    return point + 2 * resolution_mm / rise * up;
 }
 
 // Whether a point of the unit sphere is to the left of an outline, seen from outside.
@@ -216,7 +206,7 @@ bool Containment::on_spindle(const Point3& point) const {
 }
 
 bool Containment::on_torus(const Point3& point) const {
-    const Point2 at = invert(surface_, raised(surface_, point));
+    const Point2 at = invert(surface_, point);
     const double sense = (same_sense_ ? 1 : -1) * handedness(std::get<Torus>(surface_).frame);
     // axis 0: along the tube at constant u; axis 1: around at constant v.
     for (const int fixed : {0, 1}) {

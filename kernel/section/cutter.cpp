@@ -61,6 +61,10 @@ std::vector<HeightRange> edge_ranges(const Model& model, const MonotoneEdges& ed
     return ranges;
 }
 
+Point3 apex_of(const Cone& cone) {
+    return cone.frame.origin - cone.radius_mm / std::tan(cone.half_angle_rad) * cone.frame.z;
+}
+
 // The heights at which a closed component of the face's surface can lie in the face; empty for surfaces whose
 // sections are never closed without meeting an edge.
 HeightRange closed_component_range(const Face& face, HeightRange loops) {
@@ -106,6 +110,32 @@ std::vector<Point3> level_points(const Surface& surface) {
     return points;
 }
 
+void sort_unique(std::vector<double>& heights) {
+    std::sort(heights.begin(), heights.end());
+    heights.erase(std::unique(heights.begin(), heights.end()), heights.end());
+}
+
+// Levels of edges, and heights where a surface is level that are not one of those but for round-off.
+std::vector<double> critical_heights(const Model& model, const MonotoneEdges& edges) {
+    std::vector<double> levels = edges.vertex_level_mm;
+    for (const MonotonePiece& piece : edges.pieces) {
+        levels.push_back(piece.bottom_mm);
+        levels.push_back(piece.top_mm);
+    }
+    sort_unique(levels);
+    std::vector<double> heights = levels;
+    const auto add = [&](double z) {
+        const auto next = std::lower_bound(levels.begin(), levels.end(), z - resolution_mm);
+        if (next == levels.end() || *next > z + resolution_mm) heights.push_back(z);
+    };
+    for (const Face& face : model.faces) {
+        for (const Point3& point : level_points(face.surface)) add(point.z());
+        if (const auto* cone = std::get_if<Cone>(&face.surface)) add(apex_of(*cone).z());
+    }
+    sort_unique(heights);
+    return heights;
+}
+
 }  // namespace
 
 Cutter::Cutter(const Model& model, const Tolerance& tolerance)
@@ -137,6 +167,8 @@ Cutter::Cutter(const Model& model, const Tolerance& tolerance)
     }
     use_start_.push_back(static_cast<std::uint32_t>(uses_.size()));
 
+    critical_mm_ = critical_heights(model, edges_);
+
     const std::vector<HeightRange> ranges = edge_ranges(model, edges_);
     std::vector<HeightInterval> closed;
     for (std::size_t f = 0; f < model.faces.size(); ++f) {
@@ -167,13 +199,21 @@ HeightRange Cutter::height_range() const {
             if (closed.containment.holds(point, point.z())) extend(point.z());
         }
         if (const auto* cone = std::get_if<Cone>(&model_[closed.face].surface)) {
-            const double slant = cone->radius_mm / std::tan(cone->half_angle_rad);
-            const Point3 apex = cone->frame.origin - slant * cone->frame.z;
             // Only an apex inside a loop that winds around it is part of the face.
-            if (closed.containment.holds_apex()) extend(apex.z());
+            if (closed.containment.holds_apex()) extend(apex_of(*cone).z());
         }
     }
     return range;
+}
+
+double Cutter::clear_of_levels(double z_mm) const {
+    if (critical_mm_.empty()) return z_mm;
+    const auto above = std::upper_bound(critical_mm_.begin(), critical_mm_.end(), z_mm);
+    if (above == critical_mm_.begin()) return std::min(z_mm, *above - level_clearance_mm);
+    const double low = *std::prev(above);
+    if (above == critical_mm_.end()) return std::max(z_mm, low + level_clearance_mm);
+    const double clearance = std::min(level_clearance_mm, (*above - low) / 2);
+    return std::clamp(z_mm, low + clearance, *above - clearance);
 }
 
 SolidId Cutter::solid_of(FaceId face) const {
@@ -348,7 +388,7 @@ void Cutter::stitch(Work& work) const {
 }
 
 Section Cutter::cut(double z_mm) const {
-    Work work{.z_mm = z_mm};
+    Work work{.z_mm = clear_of_levels(z_mm)};
     work.section.z_mm = z_mm;
     find_crossings(work);
     cut_faces(work);

@@ -8,6 +8,9 @@
 //     in `diagnostics` and left out of `contours`.
 //  3. Contours have the material on the left; a solid's contours include its voids'.
 //  4. The result depends on model, height and tolerance alone.
+//  5. No height is special. Which side of the plane every vertex is on is decided at the height itself; coordinates
+//     are taken at a height that has the same sides and keeps level_clearance_mm from every height where the topology
+//     changes (half the way, between two that are closer).
 
 #pragma once
 
@@ -65,7 +68,7 @@ private:
         SolidId solid;
     };
     struct Work {
-        double z_mm = 0;
+        double z_mm = 0;  // clear of levels
         std::vector<Crossing> crossings{};
         std::vector<Event> events{};
         std::vector<TracedSpan> spans{};
@@ -74,6 +77,7 @@ private:
         Section section{};
     };
 
+    double clear_of_levels(double z_mm) const;
     SolidId solid_of(FaceId face) const;
     void find_crossings(Work& work) const;
     void cut_face(FaceId face, std::span<const Event> events, Work& work) const;
@@ -85,7 +89,8 @@ private:
     const Model& model_;
     Tolerance tolerance_;
     MonotoneEdges edges_;
-    double extent_mm_;  // no two points of the model are farther apart
+    double extent_mm_;                 // no two points of the model are farther apart
+    std::vector<double> critical_mm_;  // heights where the topology changes, rising
     IntervalIndex pieces_by_height_;
     // Coedges by edge: uses_[use_start_[e] .. use_start_[e + 1]).
     struct Use {

@@ -18,9 +18,6 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-// Round-off splits a double root by the square root of the arithmetic's precision.
-constexpr double double_root_rad = 1e-7;
-
 double cosine_about_axis(const TorusSection& torus, double v) {
     const double reach = torus.major_mm + torus.minor_mm * std::cos(v);
     return (torus.basis.rise * torus.minor_mm * std::sin(v) - torus.height_mm) /
@@ -57,11 +54,6 @@ void find_components(TorusSection& torus) {
         const auto c = static_cast<std::size_t>(torus.count++);
         torus.from_rad[c] = from;
         torus.to_rad[c] = to;
-    }
-    // At a saddle of the height the branches only touch, in a double root, and each closes by itself.
-    if (torus.count == 1 && torus.to_rad[0] - torus.from_rad[0] > 2 * pi - double_root_rad) {
-        torus.both_ways = true;
-        torus.count = 2;
     }
 }
 
@@ -114,10 +106,7 @@ Place locate(const TorusSection& torus, const CrossingPoint& crossing) {
     const Vector3 offset = crossing.point - torus.centre;
     const double x = offset.dot(torus.basis.across), y = offset.dot(torus.basis.side);
     const double v = std::atan2(offset.dot(torus.basis.axis), std::hypot(x, y) - torus.major_mm);
-    // Where the branches touch, the rest of the edge's piece tells which one it belongs to.
-    const bool touching = torus.both_ways && std::abs(y) <= resolution_mm;
-    const bool positive =
-        (touching ? (crossing.on_piece - torus.centre).dot(torus.basis.side) : y) > 0;
+    const bool positive = y > 0;
     if (torus.both_ways) return {positive ? 0 : 1, torus.sense * (positive ? -v : v)};
     const std::size_t c = torus.count == 2 && outside(torus, 1, v) < outside(torus, 0, v) ? 1 : 0;
     const double middle = (torus.from_rad[c] + torus.to_rad[c]) / 2;

@@ -279,6 +279,52 @@ inline Model spindle_dome(double major, double minor, double radius) {
     return b.finish();
 }
 
+// A hexagonal prism (corners at `corner`, from z = 0) whose top is turned to a cone of 45 degrees: its axis is the
+// prism's, its rim the circle of radius `flat` at height `top`. The cone meets the sides in hyperbolas.
+inline Model hexagon_under_cone(double corner, double flat, double top) {
+    Builder b;
+    const double low = top - (corner - flat);  // of the corners
+    const VertexId rim_vertex = b.vertex(flat, 0, top);
+    const EdgeId rim = b.circle(top, flat, rim_vertex);
+    std::vector<VertexId> foot, head;
+    for (int i = 0; i < 6; ++i) {
+        const double a = i * pi / 3;
+        foot.push_back(b.vertex(corner * std::cos(a), corner * std::sin(a), 0));
+        head.push_back(b.vertex(corner * std::cos(a), corner * std::sin(a), low));
+    }
+    std::vector<Use> floor, ceiling;
+    std::vector<EdgeId> bottoms, arcs, sides;
+    const double apothem = corner * std::cos(pi / 6);
+    for (std::size_t i = 0; i < 6; ++i) {
+        const std::size_t next = (i + 1) % 6;
+        const double a = (static_cast<double>(i) + 0.5) * pi / 3;
+        const Vector3 out(std::cos(a), std::sin(a), 0), along(-std::sin(a), std::cos(a), 0);
+        // z = top + flat - sqrt(apothem^2 + s^2): a hyperbola opening downwards.
+        Frame frame;
+        frame.origin = apothem * out + (top + flat) * Vector3::UnitZ();
+        frame.x = -Vector3::UnitZ();
+        frame.y = along;
+        frame.z = frame.x.cross(frame.y);
+        bottoms.push_back(b.line(foot[i], foot[next]));
+        sides.push_back(b.line(foot[i], head[i]));
+        arcs.push_back(b.edge(Hyperbola{frame, apothem, apothem}, head[i], head[next]));
+    }
+    for (std::size_t i = 0; i < 6; ++i) {
+        const std::size_t next = (i + 1) % 6;
+        const double a = (static_cast<double>(i) + 0.5) * pi / 3;
+        const Vector3 out(std::cos(a), std::sin(a), 0);
+        b.face(Plane{Builder::looking(apothem * out, out)}, true,
+               {{{bottoms[i]}, {sides[next]}, {arcs[i], true}, {sides[i], true}}});
+        floor.insert(floor.begin(), Use{bottoms[i], true});
+        ceiling.push_back({arcs[i]});
+    }
+    b.face(Plane{Builder::looking({0, 0, 0}, -Vector3::UnitZ())}, true, {floor});
+    b.face(Cone{Builder::looking({0, 0, top}, -Vector3::UnitZ()), flat, pi / 4}, true,
+           {ceiling, {{rim, true}}});
+    b.face(Plane{Builder::frame_at({0, 0, top})}, true, {{{rim}}});
+    return b.finish();
+}
+
 // The same solid with its inside out: material around it, as a void.
 inline Model inside_out(Model model) {
     for (Face& face : model.faces) face.same_sense = !face.same_sense;

@@ -246,6 +246,28 @@ TEST_CASE("cutter: at the saddles of a standing torus the two lobes touch and ea
     }
 }
 
+TEST_CASE("cutter 5: a chamfered hexagon is cut right at its own corners") {
+    // A cone over a hexagon: planes through the corners meet three edges in one point.
+    const Model model = hexagon_under_cone(4, 2, 3);
+    const Cutter cutter(model, {});
+    std::vector<double> heights;
+    for (const Vertex& vertex : model.vertices) heights.push_back(vertex.point.z());
+    const HeightRange range = cutter.height_range();
+    for (const double height : heights) {
+        for (const double off : {0.0, 1e-15, -1e-15, 1e-12, -1e-12, 1e-9, -1e-9, 1e-8, -1e-8}) {
+            const double z = height + off;
+            const double above = area_of(cutter.cut(z + 1e-4)),
+                         below = area_of(cutter.cut(z - 1e-4));
+            if (z + 1e-4 >= range.top_mm || z - 1e-4 <= range.bottom_mm) continue;
+            const Section section = cutter.cut(z);
+            CHECK(section.open == 0);
+            CHECK(section.diagnostics.empty());
+            CHECK(area_of(section) > std::min(above, below) - 1e-2);
+            CHECK(area_of(section) < std::max(above, below) + 1e-2);
+        }
+    }
+}
+
 TEST_CASE("cutter: circles stay circles") {
     const Tolerance tolerance{0.005};
     for (const Side side : {Side::seam, Side::halves, Side::two_loops}) {
