@@ -235,16 +235,6 @@ TorusIntegrals torus_integrals(const Torus& torus, const FaceNodes& face, double
     return {area + turns * whole_area, cosine + turns * whole_cosine};
 }
 
-// Where the tube is wider than the ring, the torus crosses itself: its inner part is a lemon with poles on the axis.
-bool on_lemon(const Torus& torus, const FaceNodes& face) {
-    for (const LoopNodes& loop : face) {
-        for (const Node& node : loop) {
-            if (!node.step.isZero()) return beyond_axis(torus, node.point);
-        }
-    }
-    return false;
-}
-
 // Integrals along a meridian of the lemon from its waist, where v is pi.
 TorusIntegrals along_meridian(const Torus& torus, double v) {
     const double major = torus.major_mm, minor = torus.minor_mm, s = std::sin(v), c = std::cos(v);
@@ -282,8 +272,8 @@ TorusIntegrals lemon_integrals(const Torus& torus, const FaceNodes& face, double
 }
 
 TorusIntegrals tube_integrals(const Torus& torus, const FaceNodes& face, double sense) {
-    return on_lemon(torus, face) ? lemon_integrals(torus, face, sense)
-                                 : torus_integrals(torus, face, sense);
+    return torus.inner_sheet ? lemon_integrals(torus, face, sense)
+                             : torus_integrals(torus, face, sense);
 }
 
 // Three times the face's part of the volume.

@@ -37,9 +37,12 @@ struct Sphere {
     double radius_mm;
 };
 
+// A tube wider than its ring (minor > major) crosses the axis, and the torus has two sheets that meet in two poles:
+// an outer one, dented at the poles, and an inner one like a lemon. A face lies on one of them.
 struct Torus {
     Frame frame;
     double major_mm, minor_mm;
+    bool inner_sheet = false;
 };
 
 using Surface = std::variant<Plane, Cylinder, Cone, Sphere, Torus>;

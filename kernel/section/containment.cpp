@@ -74,7 +74,7 @@ double handedness(const Frame& frame) {
     return frame.x.cross(frame.y).dot(frame.z) < 0 ? -1 : 1;
 }
 
-// The outer sheet of a torus whose tube passes over the axis is closed at two poles, like a sphere.
+// Each sheet of a torus whose tube crosses the axis is closed at two poles, like a sphere.
 bool is_spindle(const Torus& torus) {
     return torus.minor_mm > torus.major_mm;
 }
@@ -87,8 +87,10 @@ Vector3 globe_direction(const Surface& surface, const Point3& point) {
     const Torus& torus = std::get<Torus>(surface);
     const Point3 local = torus.frame.to_local(point);
     const double across = std::hypot(local.x(), local.y());
-    const double tube = std::atan2(local.z(), across - torus.major_mm);
-    const double pole = std::acos(-torus.major_mm / torus.minor_mm);
+    // From the sheet's equator, as an angle about the tube's centre.
+    const double side = torus.inner_sheet ? -1 : 1;
+    const double tube = std::atan2(local.z(), across - side * torus.major_mm);
+    const double pole = std::acos(-side * torus.major_mm / torus.minor_mm);
     const double latitude = std::clamp(tube / pole, -1.0, 1.0) * full_turn_rad / 4;
     const double around = std::atan2(local.y(), local.x());
     return std::cos(latitude) *
@@ -223,13 +225,13 @@ bool Containment::on_torus(const Point3& point) const {
                     continue;
                 }
                 const double where =
-                    step.from[along] + step.by[along] * (-start / step.by[fixed]) - at[along];
+                    step.from[along] + step.by[along] * (start / (start - end)) - at[along];
                 const double ahead = where - full_turn_rad * std::floor(where / full_turn_rad);
                 if (met && ahead >= nearest) continue;
                 nearest = ahead;
                 met = true;
                 // Left of +u is +v; left of +v is -u.
-                const double left = (fixed == 0 ? 1 : -1) * sense * step.by[fixed];
+                const double left = (fixed == 0 ? 1 : -1) * sense * (end - start);
                 face_before = left < 0;
             }
         }

@@ -10,8 +10,8 @@
 //   cylinder, cone   the component is in the face if the loops on its unbounded side wind around the axis
 //   sphere           every outline lies above the component or below; seen in stereographic projection from the
 //                    sphere's highest or lowest point, whichever is on the component's side of it, it runs
-//                    clockwise: the point at infinity is on its left. So too on the outer sheet of a torus whose
-//                    tube passes over the axis, projected from the component itself
+//                    clockwise: the point at infinity is on its left. So too on either sheet of a torus whose tube
+//                    crosses the axis, projected from the component itself
 //   torus            the nearest loop ahead along the tube's circle, or else along the axis' circle, has the
 //                    face on the near side; with neither, every loop is a hole
 

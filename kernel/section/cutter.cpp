@@ -87,7 +87,7 @@ HeightRange closed_component_range(const Face& face, HeightRange loops) {
     return {infinity, -infinity};
 }
 
-// Points where the surface is level, one on each connected set of them.
+// Points where a closed surface is level, one on each connected set of them, and a spindle torus' poles.
 std::vector<Point3> level_points(const Surface& surface) {
     if (const auto* sphere = std::get_if<Sphere>(&surface)) {
         const Vector3 up = sphere->radius_mm * Vector3::UnitZ();
@@ -103,9 +103,16 @@ std::vector<Point3> level_points(const Surface& surface) {
     std::vector<Point3> points;
     for (const double side : {1.0, -1.0}) {
         for (const double up : {1.0, -1.0}) {
-            points.push_back(torus->frame.origin + side * torus->major_mm * across +
-                             up * torus->minor_mm * Vector3::UnitZ());
+            const Vector3 tube = up * torus->minor_mm * Vector3::UnitZ();
+            const bool beyond_axis = torus->major_mm + side * tube.dot(across) < 0;
+            if (beyond_axis != torus->inner_sheet) continue;
+            points.push_back(torus->frame.origin + side * torus->major_mm * across + tube);
         }
+    }
+    const double pole2 = torus->minor_mm * torus->minor_mm - torus->major_mm * torus->major_mm;
+    if (pole2 > 0) {
+        points.push_back(torus->frame.origin + std::sqrt(pole2) * axis);
+        points.push_back(torus->frame.origin - std::sqrt(pole2) * axis);
     }
     return points;
 }

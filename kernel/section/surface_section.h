@@ -90,6 +90,7 @@ struct TorusSection {
     Point3 centre;
     LeaningBasis basis;  // with rise >= 0
     double major_mm, minor_mm;
+    bool inner_sheet;
     double height_mm;  // of the plane over the centre
     double sense;
     // Components: each an interval of the tube's angle, or (both_ways) a whole turn of it, once with the axis

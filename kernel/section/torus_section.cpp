@@ -5,7 +5,8 @@
 // so the section is two mirrored branches u = +-acos q(v) over the intervals of v where |q| <= 1. An interval's
 // ends, q = +-1, solve  minor * sin(v -+ phi) = h +- lean * major  with tan phi = lean / rise: closed form. At an
 // end the branches meet; with v = middle - half * cos(theta) both are smooth in theta, and one key goes round.
-// Along z x n, v rises where u < 0 and falls where u > 0.
+// Along z x n, v rises where u < 0 and falls where u > 0; so too on an inner sheet, where the reach
+// major + minor cos v is negative and the point lies opposite to u, since both turn.
 
 #include <algorithm>
 #include <cmath>
@@ -40,8 +41,8 @@ void find_components(TorusSection& torus) {
     append_roots((torus.height_mm - over) / torus.minor_mm, -phi, ends);
     std::sort(ends.begin(), ends.end());
     const auto inside = [&](double v) {
-        return torus.major_mm + torus.minor_mm * std::cos(v) > 0 &&
-               std::abs(cosine_about_axis(torus, v)) < 1;
+        const bool beyond_axis = torus.major_mm + torus.minor_mm * std::cos(v) < 0;
+        return beyond_axis == torus.inner_sheet && std::abs(cosine_about_axis(torus, v)) < 1;
     };
     if (ends.empty()) {
         torus.both_ways = inside(0);
@@ -63,6 +64,10 @@ SurfaceSection level_circles(const Torus& torus, bool same_sense, double height_
     // The two circles are one: the plane touches the tube's top or bottom.
     if (half2 <= resolution_mm * resolution_mm) return TouchSection{};
     const double half = std::sqrt(half2);
+    if (torus.inner_sheet) {
+        if (half <= torus.major_mm) return TouchSection{};
+        return CircleSection{centre, 1, {half - torus.major_mm, 0}, {same_sense, false}, 0};
+    }
     // Beyond the axis the inner circle would be on the tube's other sheet.
     const int count = half > torus.major_mm ? 1 : 2;
     return CircleSection{centre,
@@ -91,6 +96,7 @@ SurfaceSection torus_section(const Torus& torus, bool same_sense, double z_mm, d
                          leaning_basis(axis),
                          torus.major_mm,
                          torus.minor_mm,
+                         torus.inner_sheet,
                          height,
                          same_sense ? 1.0 : -1.0,
                          0,
@@ -104,8 +110,11 @@ SurfaceSection torus_section(const Torus& torus, bool same_sense, double z_mm, d
 
 Place locate(const TorusSection& torus, const CrossingPoint& crossing) {
     const Vector3 offset = crossing.point - torus.centre;
-    const double x = offset.dot(torus.basis.across), y = offset.dot(torus.basis.side);
-    const double v = std::atan2(offset.dot(torus.basis.axis), std::hypot(x, y) - torus.major_mm);
+    // Beyond the axis the tube's centre is on the other side.
+    const double side = torus.inner_sheet ? -1 : 1;
+    const double x = offset.dot(torus.basis.across), y = side * offset.dot(torus.basis.side);
+    const double v =
+        std::atan2(offset.dot(torus.basis.axis), side * std::hypot(x, y) - torus.major_mm);
     const bool positive = y > 0;
     if (torus.both_ways) return {positive ? 0 : 1, torus.sense * (positive ? -v : v)};
     const std::size_t c = torus.count == 2 && outside(torus, 1, v) < outside(torus, 0, v) ? 1 : 0;

@@ -115,7 +115,9 @@ private:
         }
         if (sides.turned()) *surface = other_nappe(std::get<Cone>(*surface));
         // Files give the normal of a torus as d/du x d/dv, which turns where the tube has crossed the axis.
-        const bool same_sense = face.same_sense != is_beyond_axis(*surface, first_loop);
+        const bool inner_sheet = is_beyond_axis(*surface, first_loop);
+        if (inner_sheet) std::get<Torus>(*surface).inner_sheet = true;
+        const bool same_sense = face.same_sense != inner_sheet;
         model_.faces.push_back({std::move(*surface), same_sense, first_loop, face.loop_count, shell,
                                 file_.id(face.face)});
         return Done{};

@@ -267,14 +267,15 @@ inline Model torus(double major, double minor, bool seam) {
     return b.finish();
 }
 
-// A dome: the outer sheet of a spindle torus (minor > major) over the circle of the given radius, down to its rim
-// plane. Its top is the torus' pole, or, where that lies lower, a dent around it.
-inline Model spindle_dome(double major, double minor, double radius) {
+// A dome over the circle of the given radius: a sheet of a spindle torus (minor > major), cut at its rim's plane. The
+// outer sheet is dented at the axis, the inner one pointed.
+inline Model spindle_dome(double major, double minor, double radius, bool inner_sheet) {
     Builder b;
-    const double z = std::sqrt(minor * minor - (radius - major) * (radius - major));
+    const double from_tube = inner_sheet ? radius + major : radius - major;
+    const double z = std::sqrt(minor * minor - from_tube * from_tube);
     const VertexId v = b.vertex(radius, 0, z);
     const EdgeId rim = b.circle(z, radius, v);
-    b.face(Torus{Builder::frame_at({0, 0, 0}), major, minor}, true, {{{rim}}});
+    b.face(Torus{Builder::frame_at({0, 0, 0}), major, minor, inner_sheet}, true, {{{rim}}});
     b.face(Plane{Builder::looking({0, 0, z}, -Vector3::UnitZ())}, true, {{{rim, true}}});
     return b.finish();
 }

@@ -191,7 +191,7 @@ TEST_CASE("1, 2, 5: tori, whole and in parts") {
 }
 
 TEST_CASE("1, 2, 5: where the tube crosses the axis, the lemon inside") {
-    const Torus torus{at_height(0), 2, 5};
+    const Torus torus{at_height(0), 2, 5, true};
     const double tip = std::sqrt(25.0 - 4);
     for (const double z : {-4.0, -1.0, 0.0, 3.0}) {
         // The part above z, its radius sqrt(25 - h^2) - 2 at height h.

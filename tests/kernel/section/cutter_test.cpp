@@ -1,13 +1,14 @@
 // Invariants of sections: closed whatever the height and the position, areas that add up to the volume,
 // contours on the surfaces within the tolerance.
 
+#include "kernel/section/cutter.h"
+
 #include <doctest/doctest.h>
 
 #include <random>
 #include <string>
 
 #include "kernel/brep/placement.h"
-#include "kernel/section/cutter.h"
 #include "kernel/solids.h"
 
 using namespace lyr;
@@ -16,9 +17,10 @@ using namespace lyr::testing;
 namespace {
 
 // By rings: the height of the tube over the rim, integrated over the disc.
-double spindle_dome_volume(double major, double minor, double radius) {
+double spindle_dome_volume(double major, double minor, double radius, bool inner_sheet) {
     const auto height = [&](double r) {
-        return std::sqrt(minor * minor - (r - major) * (r - major));
+        const double from_tube = inner_sheet ? r + major : r - major;
+        return std::sqrt(minor * minor - from_tube * from_tube);
     };
     constexpr int rings = 200000;
     double volume = 0;
@@ -54,7 +56,8 @@ std::vector<Case> solids() {
             {"torus, no edge", torus(6, 2, false), 2 * pi * pi * 6 * 4},
             {"halved ball", halved_ball(5), pi * 4 / 3 * 125},
             {"halved torus", halved_torus(6, 2), 2 * pi * pi * 6 * 4},
-            {"spindle dome", spindle_dome(2, 5, 6), spindle_dome_volume(2, 5, 6)}};
+            {"dented dome", spindle_dome(2, 5, 6, false), spindle_dome_volume(2, 5, 6, false)},
+            {"pointed dome", spindle_dome(2, 5, 2.5, true), spindle_dome_volume(2, 5, 2.5, true)}};
 }
 
 std::vector<Eigen::Affine3d> positions() {
