@@ -115,6 +115,10 @@ bool is_left_of(const Vector3& pole, const Outline& outline, double sense) {
     return sense * doubled_area >= 0;
 }
 
+// Rays run this far beside their point: edges along a parameter line have vertices exactly on the line through a point
+// that was found on it, and a vertex on a ray would be met twice at one place. A metre away it is resolution_mm / 100.
+constexpr double ray_offset_rad = 1e-12;
+
 UvStep uv_step(const Surface& surface, const Point3& a, const Point3& b) {
     const Point2 from = invert(surface, a), to = invert(surface, b);
     return {from,
@@ -208,7 +212,7 @@ bool Containment::on_spindle(const Point3& point) const {
 }
 
 bool Containment::on_torus(const Point3& point) const {
-    const Point2 at = invert(surface_, point);
+    const Point2 at = invert(surface_, point) + Point2::Constant(ray_offset_rad);
     const double sense = (same_sense_ ? 1 : -1) * handedness(std::get<Torus>(surface_).frame);
     // axis 0: along the tube at constant u; axis 1: around at constant v.
     for (const int fixed : {0, 1}) {

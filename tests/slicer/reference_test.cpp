@@ -75,3 +75,37 @@ TEST_CASE("the gearbox base agrees to 1e-5 without help from the tolerance") {
         CHECK(figures_of(cutter.cut(z)).area_mm2 == doctest::Approx(area).epsilon(area_agreement));
     }
 }
+
+TEST_CASE("the areas of the sections add up to the reference's volume, whichever side is up") {
+    const toml::table reference = toml::parse_file(parts + "reference.toml");
+    for (const toml::node& node : *reference["part"].as_array()) {
+        const toml::table& part = *node.as_table();
+        const std::string file = part["file"].value_or(std::string());
+        const double volume = part["volume_mm3"].value_or(NAN);
+        CAPTURE(file);
+        for (const Vector3& up : {Vector3(0, 0, -1), Vector3(0, 1, 0), Vector3(1, 1, 0),
+                                  Vector3(1, 2, 3), Vector3(0.01, 0.02, 1)}) {
+            CAPTURE(up.transpose());
+            Options options;
+            options.up = up;
+            Diagnostics diagnostics;
+            const auto model = load(parts + file, options, diagnostics);
+            REQUIRE(model);
+            const Cutter cutter(*model, options.tolerance);
+            const HeightRange range = cutter.height_range();
+            // Not in step with the parts' own levels.
+            constexpr int planes = 397;
+            const double step = (range.top_mm - range.bottom_mm) / planes;
+            double sum = 0;
+            for (int i = 0; i < planes; ++i) {
+                const SectionFigures figures =
+                    figures_of(cutter.cut(range.bottom_mm + (i + 0.5) * step));
+                CHECK(figures.open == 0);
+                CHECK(figures.area_mm2 > 0);
+                sum += step * figures.area_mm2;
+            }
+            // A level face between two planes is worth up to half a step of its area.
+            CHECK(sum == doctest::Approx(volume).epsilon(0.005));
+        }
+    }
+}
