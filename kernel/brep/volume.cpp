@@ -305,6 +305,7 @@ double flux(const Model& model, const Face& face, const Point3& c) {
             return (s.frame.origin - c).dot(outward) +
                    sense * (s.minor_mm * integrals.area + s.major_mm * integrals.cosine);
         }
+        double operator()(const SharedBSplineSurface&) const { return 0; }
     };
     return std::visit(Visitor{nodes, sense, outward, c}, face.surface);
 }
@@ -319,7 +320,15 @@ Point3 near_point(const Model& model, const Shell& shell) {
         }
     }
     const Face& face = model.faces[shell.first_face];
-    return std::visit([](const auto& s) { return s.frame.origin; }, face.surface);
+    return std::visit(
+        [](const auto& s) -> Point3 {
+            if constexpr (std::is_same_v<std::decay_t<decltype(s)>, SharedBSplineSurface>) {
+                return s->control_points.front();
+            } else {
+                return s.frame.origin;
+            }
+        },
+        face.surface);
 }
 
 }  // namespace
@@ -344,6 +353,7 @@ double signed_area_mm2(const Model& model, FaceId id) {
         double operator()(const Cone& s) const { return cone_area(s, nodes, sense); }
         double operator()(const Sphere& s) const { return sphere_area(s, nodes, sense); }
         double operator()(const Torus& s) const { return tube_integrals(s, nodes, sense).area; }
+        double operator()(const SharedBSplineSurface&) const { return 0; }
     };
     return std::visit(Visitor{nodes_of(model, face), face.same_sense ? 1.0 : -1.0}, face.surface);
 }

@@ -1,4 +1,5 @@
-// Elementary surfaces: each is solved in its own frame, where inversion is at most two arc tangents.
+// Elementary surfaces: each is solved in its own frame, where inversion is at most two arc tangents. And the dispatch
+// to B-splines.
 
 #include "kernel/geometry/surface.h"
 
@@ -33,6 +34,9 @@ Point3 point_at(const Torus& s, const Point2& uv) {
     return s.frame.origin + (s.major_mm + s.minor_mm * std::cos(uv.y())) * radial(s.frame, uv.x()) +
            s.minor_mm * std::sin(uv.y()) * s.frame.z;
 }
+Point3 point_at(const SharedBSplineSurface& s, const Point2& uv) {
+    return evaluate(*s, uv);
+}
 
 Vector3 normal_at(const Plane& s, const Point2&) {
     return s.frame.z;
@@ -49,6 +53,9 @@ Vector3 normal_at(const Sphere& s, const Point2& uv) {
 }
 Vector3 normal_at(const Torus& s, const Point2& uv) {
     return std::cos(uv.y()) * radial(s.frame, uv.x()) + std::sin(uv.y()) * s.frame.z;
+}
+Vector3 normal_at(const SharedBSplineSurface& s, const Point2& uv) {
+    return normal(*s, uv);
 }
 
 Point2 parameters_of(const Plane& s, const Point3& point) {
@@ -80,6 +87,9 @@ Point2 parameters_of(const Torus& s, const Point3& point) {
     }
     return {direction_angle(-local.y(), -local.x()),
             direction_angle(local.z(), -distance - s.major_mm)};
+}
+Point2 parameters_of(const SharedBSplineSurface& s, const Point3& point) {
+    return invert(*s, point);
 }
 
 double uniform_scale(const Eigen::Affine3d& transform) {
@@ -119,14 +129,18 @@ Surface transformed(const Surface& surface, const Eigen::Affine3d& transform) {
     return std::visit(
         [&](auto s) -> Surface {
             using T = decltype(s);
-            s.frame = transformed(s.frame, transform);
-            if constexpr (std::is_same_v<T, Torus>) {
-                s.major_mm *= scale;
-                s.minor_mm *= scale;
-            } else if constexpr (!std::is_same_v<T, Plane>) {
-                s.radius_mm *= scale;
+            if constexpr (std::is_same_v<T, SharedBSplineSurface>) {
+                return std::make_shared<const BSplineSurface>(transformed(*s, transform));
+            } else {
+                s.frame = transformed(s.frame, transform);
+                if constexpr (std::is_same_v<T, Torus>) {
+                    s.major_mm *= scale;
+                    s.minor_mm *= scale;
+                } else if constexpr (!std::is_same_v<T, Plane>) {
+                    s.radius_mm *= scale;
+                }
+                return s;
             }
-            return s;
         },
         surface);
 }

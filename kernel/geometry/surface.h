@@ -4,14 +4,17 @@
 //  1. Parameters are those of ISO 10303-42: angles in radians, lengths in millimetres.
 //       plane     (x, y)          cylinder (angle, height)      cone (angle, height along the axis)
 //       sphere    (longitude, latitude)                         torus (around the axis, around the tube)
+//       B-spline  see bspline_surface.h
 //  2. normal(s, uv) is the unit normal that ISO 10303-42 gives the surface: away from the axis, centre or tube
-//     centre; a plane's z. It is geometric: mirroring a model mirrors it with its points.
+//     centre; a plane's z; for a B-spline that of d/du x d/dv. It is geometric: mirroring a model mirrors it with its points.
 //  3. invert(s, p) are the parameters of the point of s nearest to p, angles in (-pi, pi].
 
 #pragma once
 
+#include <memory>
 #include <variant>
 
+#include "kernel/geometry/bspline_surface.h"
 #include "kernel/geometry/vector.h"
 
 namespace lyr {
@@ -45,7 +48,10 @@ struct Torus {
     bool inner_sheet = false;
 };
 
-using Surface = std::variant<Plane, Cylinder, Cone, Sphere, Torus>;
+// Shared, because faces are copied and moved about while their control points are not looked at.
+using SharedBSplineSurface = std::shared_ptr<const BSplineSurface>;
+
+using Surface = std::variant<Plane, Cylinder, Cone, Sphere, Torus, SharedBSplineSurface>;
 
 // Whether the point is nearest to where the tube has crossed the axis, which it does if it is wider than the ring.
 // There d/du x d/dv points towards the tube's centre, against normal().

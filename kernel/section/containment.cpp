@@ -157,8 +157,13 @@ Outline Containment::prepared(const std::vector<Point3>& points, double height_m
             outline.steps.push_back(uv_step(surface_, points[i], points[(i + 1) % points.size()]));
         }
     } else {
-        std::visit([&](const auto& s) { outline.winding = winding_around(s.frame, points); },
-                   surface_);
+        std::visit(
+            [&](const auto& s) {
+                if constexpr (!std::is_same_v<std::decay_t<decltype(s)>, SharedBSplineSurface>) {
+                    outline.winding = winding_around(s.frame, points);
+                }
+            },
+            surface_);
     }
     return outline;
 }

@@ -233,6 +233,7 @@ SurfaceSection section_of(const Surface& surface, bool same_sense, double z_mm, 
         SurfaceSection operator()(const Torus& s) const {
             return torus_section(s, same_sense, z_mm, extent_mm);
         }
+        SurfaceSection operator()(const SharedBSplineSurface&) const { return TouchSection{}; }
     };
     return std::visit(Visitor{same_sense, z_mm, extent_mm}, surface);
 }
