@@ -13,6 +13,8 @@
 #include <limits>
 #include <optional>
 
+#include "kernel/geometry/tolerance.h"
+
 namespace lyr {
 namespace {
 
@@ -133,6 +135,80 @@ void fit_arcs(const PlaneCurve& curve, double from, double to, const Point2& sta
         }
         step = std::max(at - before, shortest);
         here = {out.back().end, curve(at).tangent};
+    }
+}
+
+namespace {
+
+// The greatest distance of the points strictly between two of them from a biarc between these.
+double deviation_mm(std::span<const CurvePoint> points, const Biarc& biarc) {
+    const Point2 &start = points.front().point, &middle = biarc.first.end;
+    const Vector2 across = end_tangent(start, biarc.first);
+    double worst = 0;
+    for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+        const Point2& point = points[i].point;
+        const bool first = (point - middle).dot(across) < 0;
+        worst = std::max(worst, std::abs(first ? offset_mm(start, biarc.first, point)
+                                               : offset_mm(middle, biarc.second, point)));
+    }
+    return worst;
+}
+
+struct PointReach {
+    Biarc biarc;
+    std::size_t last;
+};
+
+// The longest biarc from the first point, looked for from `guess` points ahead.
+std::optional<PointReach> longest_biarc(std::span<const CurvePoint> points, std::size_t guess,
+                                        double allowed_mm) {
+    std::optional<PointReach> best;
+    std::size_t good = 0, bad = points.size();
+    for (std::size_t target = std::clamp<std::size_t>(guess, 1, points.size() - 1);
+         good + 1 < bad;) {
+        const auto biarc = biarc_between(points.front(), points[target]);
+        if (biarc && deviation_mm(points.first(target + 1), *biarc) <= allowed_mm) {
+            best = PointReach{*biarc, target};
+            good = target;
+        } else {
+            bad = target;
+        }
+        const std::size_t doubled = std::min(2 * good, points.size() - 1);
+        target = doubled > good && doubled < bad ? doubled : good + (bad - good) / 2;
+    }
+    return best;
+}
+
+// What is straight to the model's own resolution is a line.
+Segment straightened(Segment segment) {
+    if (std::abs(segment.sagitta_mm) <= resolution_mm) segment.sagitta_mm = 0;
+    return segment;
+}
+
+void fit_smooth(std::span<const CurvePoint> points, double allowed_mm, std::vector<Segment>& out) {
+    std::size_t guess = points.size();
+    while (points.size() > 1) {
+        const auto reach = longest_biarc(points, guess, allowed_mm);
+        if (reach) {
+            out.push_back(straightened(reach->biarc.first));
+            out.push_back(straightened(reach->biarc.second));
+            guess = reach->last;
+        } else {
+            out.push_back({points[1].point, 0});
+            guess = 1;
+        }
+        points = points.subspan(guess);
+    }
+}
+
+}  // namespace
+
+void fit_arcs(std::span<const CurvePoint> points, double allowed_mm, std::vector<Segment>& out) {
+    for (std::size_t first = 0; first + 1 < points.size();) {
+        std::size_t last = first + 1;
+        while (last + 1 < points.size() && points[last + 1].point != points[last].point) ++last;
+        fit_smooth(points.subspan(first, last - first + 1), allowed_mm, out);
+        first = last + 1;
     }
 }
 

@@ -7,11 +7,17 @@
 //     between samples, not just sampled (see fit.cpp).
 //  3. Arcs are as long as the bound allows, found by bisection.
 //
+//  4. The same holds for a curve given by points, densely enough that its chords are a curve to the caller: every
+//     point is within `allowed_mm`, between two neighbours the arcs stray no farther from their chord than the
+//     curve does. A point that is there twice, with two tangents, is a corner; the arcs have it too. A stretch that is
+//     straight comes out as a line.
+//
 // Method: biarcs with equal tangent lengths (Bolton, "Biarc curves", CAD 7(2), 1975), greedily.
 
 #pragma once
 
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "kernel/contour/arc.h"
@@ -25,7 +31,14 @@ struct CurvePoint {
 
 using PlaneCurve = std::function<CurvePoint(double parameter)>;
 
+// A curve whose direction changes by more than this at one point has a corner there: over a whole segment of a
+// millimetre, a tangent that is wrong by this shows by 0.001 mm in the middle.
+inline constexpr double corner_rad = 0.008;
+
 void fit_arcs(const PlaneCurve& curve, double from, double to, const Point2& start,
               const Point2& end, double allowed_mm, std::vector<Segment>& out);
+
+// From the first of the points to the last.
+void fit_arcs(std::span<const CurvePoint> points, double allowed_mm, std::vector<Segment>& out);
 
 }  // namespace lyr
