@@ -74,6 +74,13 @@ double handedness(const Frame& frame) {
     return frame.x.cross(frame.y).dot(frame.z) < 0 ? -1 : 1;
 }
 
+// The axis that loops can wind around on an unbounded surface.
+const Frame* axis_frame(const Surface& surface) {
+    if (const auto* cylinder = std::get_if<Cylinder>(&surface)) return &cylinder->frame;
+    if (const auto* cone = std::get_if<Cone>(&surface)) return &cone->frame;
+    return nullptr;
+}
+
 // Each sheet of a torus whose tube crosses the axis is closed at two poles, like a sphere.
 bool is_spindle(const Torus& torus) {
     return torus.minor_mm > torus.major_mm;
@@ -119,18 +126,35 @@ bool is_left_of(const Vector3& pole, const Outline& outline, double sense) {
 // that was found on it, and a vertex on a ray would be met twice at one place. A metre away it is resolution_mm / 100.
 constexpr double ray_offset_rad = 1e-12;
 
-UvStep uv_step(const Surface& surface, const Point3& a, const Point3& b) {
-    const Point2 from = invert(surface, a), to = invert(surface, b);
-    return {from,
-            to,
-            {std::remainder(to.x() - from.x(), full_turn_rad),
-             std::remainder(to.y() - from.y(), full_turn_rad)}};
+double short_way(double difference, double period) {
+    return period > 0 ? std::remainder(difference, period) : difference;
+}
+
+std::vector<Point2> parameters_along(const Surface& surface, const std::vector<Point3>& points) {
+    const auto* spline = std::get_if<SharedBSplineSurface>(&surface);
+    std::vector<Point2> result;
+    for (const Point3& point : points) {
+        // Searched for once; from there on, neighbours are near.
+        result.push_back(spline && !result.empty() ? invert_near(**spline, point, result.back())
+                                                   : invert(surface, point));
+    }
+    return result;
+}
+
+std::array<double, 2> periods_of(const Surface& surface) {
+    if (std::holds_alternative<Torus>(surface)) return {full_turn_rad, full_turn_rad};
+    const auto* spline = std::get_if<SharedBSplineSurface>(&surface);
+    if (!spline) return {0, 0};
+    const BSplineSurface& s = **spline;
+    return {s.closed_u ? s.end_u() - s.start_u() : 0, s.closed_v ? s.end_v() - s.start_v() : 0};
 }
 
 }  // namespace
 
 Containment::Containment(const Model& model, FaceId id, const std::vector<double>& vertex_level_mm)
-    : surface_(model[id].surface), same_sense_(model[id].same_sense) {
+    : surface_(model[id].surface),
+      same_sense_(model[id].same_sense),
+      period_(periods_of(surface_)) {
     std::vector<Coedge> rest = bounding_coedges(model, model[id]);
     while (!rest.empty()) {
         std::vector<Point3> points;
@@ -152,18 +176,17 @@ Outline Containment::prepared(const std::vector<Point3>& points, double height_m
     const auto* torus = std::get_if<Torus>(&surface_);
     if (std::holds_alternative<Sphere>(surface_) || (torus && is_spindle(*torus))) {
         for (const Point3& p : points) outline.directions.push_back(globe_direction(surface_, p));
-    } else if (torus) {
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            outline.steps.push_back(uv_step(surface_, points[i], points[(i + 1) % points.size()]));
-        }
+    } else if (const auto* frame = axis_frame(surface_)) {
+        outline.winding = winding_around(*frame, points);
     } else {
-        std::visit(
-            [&](const auto& s) {
-                if constexpr (!std::is_same_v<std::decay_t<decltype(s)>, SharedBSplineSurface>) {
-                    outline.winding = winding_around(s.frame, points);
-                }
-            },
-            surface_);
+        const std::vector<Point2> uv = parameters_along(surface_, points);
+        for (std::size_t i = 0; i < uv.size(); ++i) {
+            const Point2 &from = uv[i], &to = uv[(i + 1) % uv.size()];
+            outline.steps.push_back({from,
+                                     to,
+                                     {short_way(to.x() - from.x(), period_[0]),
+                                      short_way(to.y() - from.y(), period_[1])}});
+        }
     }
     return outline;
 }
@@ -172,9 +195,9 @@ bool Containment::holds(const Point3& point, double z_mm) const {
     if (std::holds_alternative<Cylinder>(surface_)) return on_cylinder(z_mm);
     if (const auto* cone = std::get_if<Cone>(&surface_)) return on_cone(*cone, z_mm);
     if (std::holds_alternative<Sphere>(surface_)) return on_sphere(z_mm);
+    if (std::holds_alternative<Plane>(surface_)) return false;
     const auto* torus = std::get_if<Torus>(&surface_);
-    if (!torus) return false;
-    return is_spindle(*torus) ? on_spindle(point) : on_torus(point);
+    return torus && is_spindle(*torus) ? on_spindle(point) : in_parameters(point);
 }
 
 bool Containment::holds_apex() const {
@@ -216,35 +239,43 @@ bool Containment::on_spindle(const Point3& point) const {
     });
 }
 
-bool Containment::on_torus(const Point3& point) const {
+// +1 if the face is on the left of its loops in the (u, v) plane.
+double Containment::sense_of_parameters() const {
+    const double sense = same_sense_ ? 1 : -1;
+    if (const auto* torus = std::get_if<Torus>(&surface_)) return sense * handedness(torus->frame);
+    return std::get<SharedBSplineSurface>(surface_)->mirrored ? -sense : sense;
+}
+
+bool Containment::in_parameters(const Point3& point) const {
     const Point2 at = invert(surface_, point) + Point2::Constant(ray_offset_rad);
-    const double sense = (same_sense_ ? 1 : -1) * handedness(std::get<Torus>(surface_).frame);
-    // axis 0: along the tube at constant u; axis 1: around at constant v.
+    const double sense = sense_of_parameters();
+    // fixed 0: along v at constant u; fixed 1: along u at constant v.
     for (const int fixed : {0, 1}) {
         const int along = 1 - fixed;
-        double nearest = full_turn_rad;
-        bool face_before = false, met = false;
+        const double turn = period_[static_cast<std::size_t>(along)];
+        const double across = period_[static_cast<std::size_t>(fixed)];
+        double nearest = 0;
+        bool inside = false, met = false;
         for (const Outline& outline : outlines_) {
             for (const UvStep& step : outline.steps) {
                 // Each point's side is found from the point alone, so that no step between two is
-                // missed; the far side, where the angle jumps, is no crossing.
-                const double start = std::remainder(step.from[fixed] - at[fixed], full_turn_rad);
-                const double end = std::remainder(step.to[fixed] - at[fixed], full_turn_rad);
-                if ((start <= 0) == (end <= 0) || std::abs(end - start) > full_turn_rad / 2) {
-                    continue;
-                }
-                const double where =
+                // missed; the far side, where the parameter jumps, is no crossing.
+                const double start = short_way(step.from[fixed] - at[fixed], across);
+                const double end = short_way(step.to[fixed] - at[fixed], across);
+                if ((start <= 0) == (end <= 0)) continue;
+                if (across > 0 && std::abs(end - start) > across / 2) continue;
+                double ahead =
                     step.from[along] + step.by[along] * (start / (start - end)) - at[along];
-                const double ahead = where - full_turn_rad * std::floor(where / full_turn_rad);
-                if (met && ahead >= nearest) continue;
-                nearest = ahead;
+                if (turn > 0) ahead -= turn * std::floor(ahead / turn);
+                if (met && std::abs(ahead) >= nearest) continue;
+                nearest = std::abs(ahead);
                 met = true;
-                // Left of +u is +v; left of +v is -u.
+                // Left of +u is +v; left of +v is -u. Behind the point it is the far side that counts.
                 const double left = (fixed == 0 ? 1 : -1) * sense * (end - start);
-                face_before = left < 0;
+                inside = (left < 0) == (ahead >= 0);
             }
         }
-        if (met) return face_before;
+        if (met) return inside;
     }
     for (const Outline& outline : outlines_) {
         double doubled_area = 0;

@@ -12,18 +12,19 @@
 //                    sphere's highest or lowest point, whichever is on the component's side of it, it runs
 //                    clockwise: the point at infinity is on its left. So too on either sheet of a torus whose tube
 //                    crosses the axis, projected from the component itself
-//   torus            the nearest loop ahead along the tube's circle, or else along the axis' circle, has the
-//                    face on the near side; with neither, every loop is a hole
+//   torus, B-spline  the nearest loop along v (the tube's circle), or else along u, has the face on the near side;
+//                    with neither, every loop is a hole
 
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "kernel/brep/model.h"
 
 namespace lyr {
 
-// From one point of an outline to the next in the torus' parameters, `by` the short way round.
+// From one point of an outline to the next in the surface's parameters, `by` the short way round.
 struct UvStep {
     Point2 from, to, by;
 };
@@ -33,7 +34,7 @@ struct Outline {
     double height_mm = 0;             // of any vertex: its level
     int winding = 0;                  // cylinder, cone: around the axis
     std::vector<Vector3> directions;  // sphere: on the unit sphere; the first follows the last
-    std::vector<UvStep> steps;        // torus
+    std::vector<UvStep> steps;        // torus, B-spline
 };
 
 class Containment {
@@ -51,11 +52,13 @@ private:
     bool on_cone(const Cone& cone, double z_mm) const;
     bool on_sphere(double z_mm) const;
     bool on_spindle(const Point3& point) const;
-    bool on_torus(const Point3& point) const;
+    bool in_parameters(const Point3& point) const;
+    double sense_of_parameters() const;
     Outline prepared(const std::vector<Point3>& points, double height_mm) const;
 
     Surface surface_;
     bool same_sense_;
+    std::array<double, 2> period_{0, 0};  // of the surface's parameters; 0: not closed
     std::vector<Outline> outlines_;
 };
 

@@ -67,7 +67,8 @@ Point3 apex_of(const Cone& cone) {
 
 // The heights at which a closed component of the face's surface can lie in the face; empty for surfaces whose
 // sections are never closed without meeting an edge.
-HeightRange closed_component_range(const Face& face, HeightRange loops) {
+HeightRange closed_component_range(const Face& face, HeightRange loops,
+                                   const FreeformFace* freeform) {
     if (std::holds_alternative<Cylinder>(face.surface)) return loops;
     if (const auto* cone = std::get_if<Cone>(&face.surface)) {
         const double apex =
@@ -78,6 +79,10 @@ HeightRange closed_component_range(const Face& face, HeightRange loops) {
     if (const auto* sphere = std::get_if<Sphere>(&face.surface)) {
         const double z = sphere->frame.origin.z();
         return {z - sphere->radius_mm, z + sphere->radius_mm};
+    }
+    if (std::holds_alternative<SharedBSplineSurface>(face.surface)) {
+        const HeightRange hull = freeform->hull();
+        return {std::min(loops.bottom_mm, hull.bottom_mm), std::max(loops.top_mm, hull.top_mm)};
     }
     if (const auto* torus = std::get_if<Torus>(&face.surface)) {
         const double lean = torus->frame.z.head<2>().norm(), z = torus->frame.origin.z();
@@ -178,16 +183,27 @@ Cutter::Cutter(const Model& model, const Tolerance& tolerance)
 
     const std::vector<HeightRange> ranges = edge_ranges(model, edges_);
     std::vector<HeightInterval> closed;
-    for (std::size_t f = 0; f < model.faces.size(); ++f) {
-        const Face& face = model.faces[f];
-        const HeightRange range =
-            closed_component_range(face, range_of_loops(model, face, edges_, ranges));
+    for (std::uint32_t f = 0; f < model.faces.size(); ++f) {
+        const FaceId id{f};
+        const HeightRange loops = range_of_loops(model, model[id], edges_, ranges);
+        const bool freeform = std::holds_alternative<SharedBSplineSurface>(model[id].surface);
+        freeform_.push_back(
+            freeform ? std::make_unique<FreeformFace>(model, id, edges_.vertex_level_mm, loops)
+                     : nullptr);
+        containment_of_.push_back(-1);
+        const HeightRange range = closed_component_range(model[id], loops, freeform_.back().get());
         if (!(range.bottom_mm < range.top_mm)) continue;
-        closed.push_back(
-            {range.bottom_mm, range.top_mm, static_cast<std::uint32_t>(closed_faces_.size())});
-        closed_faces_.push_back({FaceId{f}, Containment(model, FaceId{f}, edges_.vertex_level_mm)});
+        closed.push_back({range.bottom_mm, range.top_mm, f});
+        if (freeform) continue;
+        containment_of_.back() = static_cast<std::int32_t>(containments_.size());
+        containments_.emplace_back(model, id, edges_.vertex_level_mm);
     }
     closed_faces_by_height_ = IntervalIndex(std::move(closed));
+}
+
+const Containment& Cutter::containment(FaceId face) const {
+    if (freeform_[face.value]) return freeform_[face.value]->containment();
+    return containments_[static_cast<std::size_t>(containment_of_[face.value])];
 }
 
 HeightRange Cutter::height_range() const {
@@ -201,14 +217,25 @@ HeightRange Cutter::height_range() const {
         extend(piece.bottom_mm);
         extend(piece.top_mm);
     }
-    for (const ClosedFace& closed : closed_faces_) {
-        for (const Point3& point : level_points(model_[closed.face].surface)) {
-            if (closed.containment.holds(point, point.z())) extend(point.z());
+    for (std::uint32_t f = 0; f < model_.faces.size(); ++f) {
+        if (containment_of_[f] < 0) continue;
+        const Face& face = model_.faces[f];
+        for (const Point3& point : level_points(face.surface)) {
+            if (containment(FaceId{f}).holds(point, point.z())) extend(point.z());
         }
-        if (const auto* cone = std::get_if<Cone>(&model_[closed.face].surface)) {
+        if (const auto* cone = std::get_if<Cone>(&face.surface)) {
             // Only an apex inside a loop that winds around it is part of the face.
-            if (closed.containment.holds_apex()) extend(apex_of(*cone).z());
+            if (containment(FaceId{f}).holds_apex()) extend(apex_of(*cone).z());
         }
+    }
+    // Free-form faces last: those whose hulls stay within need not be looked into.
+    for (const auto& freeform : freeform_) {
+        if (!freeform) continue;
+        const HeightRange hull = freeform->hull();
+        if (range.bottom_mm <= hull.bottom_mm && hull.top_mm <= range.top_mm) continue;
+        const HeightRange heights = freeform->heights();
+        extend(heights.bottom_mm);
+        extend(heights.top_mm);
     }
     return range;
 }
@@ -259,16 +286,20 @@ void Cutter::find_crossings(Work& work) const {
     });
 }
 
-void Cutter::cut_face(FaceId id, std::span<const Event> events, Work& work) const {
+SurfaceSection Cutter::section_at(FaceId id, double z_mm) const {
     const Face& face = model_[id];
-    const SurfaceSection section = section_of(face.surface, face.same_sense, work.z_mm, extent_mm_);
-    std::vector<FaceCrossing> crossings;
-    for (const Event& event : events) {
-        const Crossing& crossing = work.crossings[event.crossing];
-        crossings.push_back(
-            {event.crossing, event.enters, {crossing.point, crossing.piece->middle}});
-    }
-    const FaceSpans paired = pair_crossings(section, crossings);
+    const auto& freeform = freeform_[id.value];
+    if (!freeform) return section_of(face.surface, face.same_sense, z_mm, extent_mm_);
+    const bool forward = face.same_sense != freeform->mesh().surface->mirrored;
+    FreeformSection section{
+        level_curves(freeform->mesh(), z_mm, forward, tolerance_.trace_mm() / 2)};
+    if (section.curves.empty()) return TouchSection{};
+    return section;
+}
+
+void Cutter::add_spans(FaceId id, const SurfaceSection& section, const FaceSpans& paired,
+                       Work& work) const {
+    const Face& face = model_[id];
     for (const Span& span : paired.spans) {
         const Point2 start = work.crossings[span.enter].point.head<2>();
         const Point2 end = work.crossings[span.leave].point.head<2>();
@@ -290,61 +321,68 @@ void Cutter::cut_face(FaceId id, std::span<const Event> events, Work& work) cons
                    " has no counterpart",
                face.source, work.crossings[c].point);
     }
-    if (paired.forced > 0) {
-        work.section.diagnostics.push_back(
-            {Severity::warning,
-             ExitStatus::geometry,
-             "edges lie off the face's surface: " + std::to_string(paired.forced) +
-                 " of its spans were joined by straight lines",
-             {.file = {},
-              .line = 0,
-              .column = 0,
-              .entity = face.source,
-              .layer = {},
-              .z_mm = work.z_mm}});
+    if (paired.forced == 0) return;
+    work.section.diagnostics.push_back(
+        {Severity::warning,
+         ExitStatus::geometry,
+         "edges lie off the face's surface: " + std::to_string(paired.forced) +
+             " of its spans were joined by straight lines",
+         {.file = {},
+          .line = 0,
+          .column = 0,
+          .entity = face.source,
+          .layer = {},
+          .z_mm = work.z_mm}});
+}
+
+void Cutter::add_whole_components(FaceId id, const SurfaceSection& section,
+                                  const std::vector<bool>& crossed, Work& work) const {
+    for (int component = 0; component < component_count(section); ++component) {
+        const bool is_crossed = !crossed.empty() && crossed[static_cast<std::size_t>(component)];
+        if (is_crossed || period(section, component) == 0) continue;
+        const Point2 on = at(section, {component, 0}).point;
+        if (!containment(id).holds({on.x(), on.y(), work.z_mm}, work.z_mm)) continue;
+        work.whole_contours.emplace_back(solid_of(id),
+                                         whole_component(section, component, tolerance_));
     }
+}
+
+void Cutter::cut_face(FaceId id, std::span<const Event> events, bool whole, Work& work) const {
+    const SurfaceSection section = section_at(id, work.z_mm);
+    FaceSpans paired;
+    if (!events.empty()) {
+        std::vector<FaceCrossing> crossings;
+        for (const Event& event : events) {
+            const Crossing& crossing = work.crossings[event.crossing];
+            crossings.push_back(
+                {event.crossing, event.enters, {crossing.point, crossing.piece->middle}});
+        }
+        paired = pair_crossings(section, crossings);
+        add_spans(id, section, paired, work);
+    }
+    if (whole) add_whole_components(id, section, paired.crossed, work);
 }
 
 void Cutter::cut_faces(Work& work) const {
-    for (std::size_t first = 0; first < work.events.size();) {
-        std::size_t last = first;
-        while (last < work.events.size() && work.events[last].face == work.events[first].face) {
-            ++last;
-        }
-        cut_face(work.events[first].face, std::span(work.events).subspan(first, last - first),
-                 work);
+    std::vector<FaceId> closed;
+    closed_faces_by_height_.stab(work.z_mm, [&](std::uint32_t f) { closed.push_back(FaceId{f}); });
+    std::sort(closed.begin(), closed.end());
+    auto whole = closed.begin();
+    for (auto first = work.events.cbegin(); first != work.events.cend() || whole != closed.end();) {
+        const FaceId face = first == work.events.cend() ? *whole
+                            : whole == closed.end()     ? first->face
+                                                        : std::min(first->face, *whole);
+        auto last = first;
+        while (last != work.events.cend() && last->face == face) ++last;
+        const bool is_whole = whole != closed.end() && *whole == face;
+        if (is_whole) ++whole;
+        const auto& freeform = freeform_[face.value];
+        // Most of a free-form surface's hull is empty; what the face spans is known after a first look.
+        const bool beyond =
+            first == last && freeform &&
+            (work.z_mm < freeform->heights().bottom_mm || freeform->heights().top_mm <= work.z_mm);
+        if (!beyond) cut_face(face, {first, last}, is_whole, work);
         first = last;
-    }
-}
-
-void Cutter::add_whole_components(Work& work) const {
-    std::vector<std::uint32_t> candidates;
-    closed_faces_by_height_.stab(work.z_mm, [&](std::uint32_t i) { candidates.push_back(i); });
-    for (const std::uint32_t i : candidates) {
-        const FaceId id = closed_faces_[i].face;
-        const Face& face = model_[id];
-        const SurfaceSection section =
-            section_of(face.surface, face.same_sense, work.z_mm, extent_mm_);
-        if (period(section) == 0) continue;
-        std::vector<bool> crossed(static_cast<std::size_t>(component_count(section)), false);
-        const auto [first, last] =
-            std::equal_range(work.events.begin(), work.events.end(), Event{id, 0, false},
-                             [](const Event& a, const Event& b) { return a.face < b.face; });
-        for (auto event = first; event != last; ++event) {
-            const Crossing& crossing = work.crossings[event->crossing];
-            const Place place = locate(section, {crossing.point, crossing.piece->middle});
-            crossed[static_cast<std::size_t>(place.component)] = true;
-        }
-        for (std::size_t c = 0; c < crossed.size(); ++c) {
-            if (crossed[c]) continue;
-            const int component = static_cast<int>(c);
-            const Point2 on = at(section, {component, 0}).point;
-            if (!closed_faces_[i].containment.holds({on.x(), on.y(), work.z_mm}, work.z_mm)) {
-                continue;
-            }
-            work.contours.emplace_back(solid_of(id),
-                                       whole_component(section, component, tolerance_));
-        }
     }
 }
 
@@ -400,7 +438,8 @@ Section Cutter::cut(double z_mm) const {
     find_crossings(work);
     cut_faces(work);
     stitch(work);
-    add_whole_components(work);
+    std::move(work.whole_contours.begin(), work.whole_contours.end(),
+              std::back_inserter(work.contours));
     std::stable_sort(work.contours.begin(), work.contours.end(),
                      [](const auto& a, const auto& b) { return a.first < b.first; });
     for (auto& [solid, contour] : work.contours) {

@@ -1,8 +1,9 @@
 // Cuts a model with planes z = const into closed contours of lines and arcs.
 //
 // Contract
-//  1. A Cutter holds what depends on the model only (monotone pieces, height intervals, outlines); cut() is
-//     const, touches only what its plane meets, and may run on several threads.
+//  1. A Cutter holds what depends on the model only (monotone pieces, height intervals, outlines, cells of free-form
+//     faces, these from the first plane on that meets them); cut() touches only what its plane meets, and may run
+//     on several threads.
 //  2. Contours close by construction: every crossing of an edge is computed once and is the end of one face's span
 //     and the start of the neighbour's. What cannot close (an edge with one face) is counted in `open`, located
 //     in `diagnostics` and left out of `contours`.
@@ -14,6 +15,7 @@
 
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "base/diagnostic.h"
@@ -21,7 +23,8 @@
 #include "kernel/brep/monotone.h"
 #include "kernel/contour/contour.h"
 #include "kernel/geometry/tolerance.h"
-#include "kernel/section/containment.h"
+#include "kernel/section/face_section.h"
+#include "kernel/section/freeform_face.h"
 #include "kernel/section/interval_index.h"
 
 namespace lyr {
@@ -36,10 +39,6 @@ struct Section {
     std::vector<SolidSection> solids;  // those the plane meets, in the model's order
     std::uint32_t open = 0;            // ends that have no continuation
     Diagnostics diagnostics;
-};
-
-struct HeightRange {
-    double bottom_mm, top_mm;
 };
 
 class Cutter {
@@ -73,16 +72,21 @@ private:
         std::vector<Event> events{};
         std::vector<TracedSpan> spans{};
         std::vector<Segment> segments{};
-        std::vector<std::pair<SolidId, Contour>> contours{};
+        std::vector<std::pair<SolidId, Contour>> contours{}, whole_contours{};
         Section section{};
     };
 
     double clear_of_levels(double z_mm) const;
     SolidId solid_of(FaceId face) const;
     void find_crossings(Work& work) const;
-    void cut_face(FaceId face, std::span<const Event> events, Work& work) const;
     void cut_faces(Work& work) const;
-    void add_whole_components(Work& work) const;
+    void cut_face(FaceId face, std::span<const Event> events, bool whole, Work& work) const;
+    SurfaceSection section_at(FaceId face, double z_mm) const;
+    void add_spans(FaceId face, const SurfaceSection& section, const FaceSpans& spans,
+                   Work& work) const;
+    void add_whole_components(FaceId face, const SurfaceSection& section,
+                              const std::vector<bool>& crossed, Work& work) const;
+    const Containment& containment(FaceId face) const;
     void stitch(Work& work) const;
     void report(Work& work, std::string message, SourceId source, const Point3& point) const;
 
@@ -99,12 +103,11 @@ private:
     };
     std::vector<Use> uses_;
     std::vector<std::uint32_t> use_start_;
-    // Faces of which a whole component can be inside.
-    struct ClosedFace {
-        FaceId face;
-        Containment containment;
-    };
-    std::vector<ClosedFace> closed_faces_;
+    // By face; null for elementary surfaces.
+    std::vector<std::unique_ptr<FreeformFace>> freeform_;
+    // Elementary faces of which a whole component can be inside, and where they are, by face; -1: none.
+    std::vector<Containment> containments_;
+    std::vector<std::int32_t> containment_of_;
     IntervalIndex closed_faces_by_height_;
 };
 

@@ -79,6 +79,10 @@ FaceSpans pair_crossings(const SurfaceSection& section, std::span<const FaceCros
     }
     std::sort(events.begin(), events.end());
     FaceSpans result;
+    result.crossed.assign(static_cast<std::size_t>(component_count(section)), false);
+    for (const Event& event : events) {
+        result.crossed[static_cast<std::size_t>(event.place.component)] = true;
+    }
     std::vector<Event> rest;
     for (std::size_t first = 0; first < events.size();) {
         std::size_t last = first;
@@ -86,8 +90,8 @@ FaceSpans pair_crossings(const SurfaceSection& section, std::span<const FaceCros
                events[last].place.component == events[first].place.component) {
             ++last;
         }
-        pair_component(std::span(events).subspan(first, last - first), period(section), result,
-                       rest);
+        pair_component(std::span(events).subspan(first, last - first),
+                       period(section, events[first].place.component), result, rest);
         first = last;
     }
     if (!rest.empty()) join_by_force(rest, result);

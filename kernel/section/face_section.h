@@ -37,6 +37,7 @@ struct FaceSpans {
     std::uint32_t forced = 0;
     // Crossings that are left over because enters and leaves differ in number.
     std::vector<std::uint32_t> unpaired;
+    std::vector<bool> crossed;  // by component of the section
 };
 
 FaceSpans pair_crossings(const SurfaceSection& section, std::span<const FaceCrossing> crossings);

@@ -176,6 +176,9 @@ double period_of(const ConeSection& cone) {
 double period_of(const TorusSection&) {
     return full_turn_rad;
 }
+double period_of(const FreeformSection&) {
+    return 0;
+}
 double period_of(const TouchSection&) {
     return 0;
 }
@@ -245,10 +248,17 @@ Place locate(const SurfaceSection& section, const CrossingPoint& crossing) {
 int component_count(const SurfaceSection& section) {
     if (const auto* circles = std::get_if<CircleSection>(&section)) return circles->count;
     if (const auto* torus = std::get_if<TorusSection>(&section)) return torus->count;
+    if (const auto* freeform = std::get_if<FreeformSection>(&section)) {
+        return static_cast<int>(freeform->curves.size());
+    }
     return std::holds_alternative<GeneratorSection>(section) ? 2 : 1;
 }
 
-double period(const SurfaceSection& section) {
+double period(const SurfaceSection& section, int component) {
+    if (const auto* freeform = std::get_if<FreeformSection>(&section)) {
+        const LevelCurve& curve = freeform->curves[static_cast<std::size_t>(component)];
+        return curve.closed ? curve.length_mm() : 0;
+    }
     return std::visit([](const auto& s) { return period_of(s); }, section);
 }
 
@@ -278,6 +288,10 @@ void trace(const SurfaceSection& section, int component, double from, double to,
         out.push_back({end});
         return;
     }
+    if (const auto* freeform = std::get_if<FreeformSection>(&section)) {
+        trace(*freeform, component, from, to, start, end, tolerance.fit_mm(), out);
+        return;
+    }
     fit_arcs(between(section, component, from, to, start, end), from, to, start, end,
              tolerance.fit_mm(), out);
 }
@@ -287,7 +301,7 @@ Contour whole_component(const SurfaceSection& section, int component, const Tole
         const auto i = static_cast<std::size_t>(component);
         return FullCircle{circles->centre, circles->radius_mm[i], circles->counter_clockwise[i]};
     }
-    const double turn = period(section);
+    const double turn = period(section, component);
     const Point2 start = at(section, {component, 0}).point;
     Path path{start, {}};
     trace(section, component, 0, turn, start, start, tolerance, path.segments);

@@ -1,4 +1,4 @@
-// The untrimmed section of an elementary surface with the plane z = h: a set of components, each a curve with
+// The untrimmed section of a surface with the plane z = h: a set of components, each a curve with
 // a key that rises along it with the material on the left.
 //
 // Contract
@@ -7,7 +7,8 @@
 //     components come together at a level line of the surface (the top of a lying cylinder, of an upright torus'
 //     tube), the side on which the crossing's whole monotone piece of edge lies decides.
 //  3. A closed component repeats after period(); the key of a point is unique within a period.
-//  4. at(component, key) is on surface and plane (to round-off), with the tangent of rule 1.
+//  4. at(component, key) is on surface and plane (to round-off; on a tracked curve, to its chord error), with the
+//     tangent of rule 1.
 //  5. trace() appends segments from `start` to `end` (points of the component at these keys, up to the model's
 //     inaccuracy, which is spread evenly over the span): lines for lines, one arc for circles, fitted arcs within
 //     tolerance.fit_mm() for the rest.
@@ -18,6 +19,7 @@
 //              through the apex: two lines
 //   sphere     circle
 //   torus      across: two circles; else by the angle about the tube, of which the section is an explicit function
+//   B-spline   tracked level curves, by the length along their chords (level_curves.h)
 
 #pragma once
 
@@ -32,6 +34,7 @@
 #include "kernel/contour/contour.h"
 #include "kernel/contour/fit.h"
 #include "kernel/geometry/tolerance.h"
+#include "kernel/section/level_curves.h"
 
 namespace lyr {
 
@@ -103,10 +106,15 @@ struct TorusSection {
 // The plane touches the surface in no more than round-off: crossings are joined by lines.
 struct TouchSection {};
 
-using SurfaceSection = std::variant<LineSection, GeneratorSection, CircleSection, EllipseSection,
-                                    ConeSection, TorusSection, TouchSection>;
+struct FreeformSection {
+    std::vector<LevelCurve> curves;
+};
 
-// `extent_mm`: how far from its origin the surface is used; a lean below resolution_mm over that is none.
+using SurfaceSection = std::variant<LineSection, GeneratorSection, CircleSection, EllipseSection,
+                                    ConeSection, TorusSection, FreeformSection, TouchSection>;
+
+// Of an elementary surface. `extent_mm`: how far from its origin the surface is used; a lean below resolution_mm over
+// that is none.
 SurfaceSection section_of(const Surface& surface, bool same_sense, double z_mm, double extent_mm);
 
 // A crossing of the section with an edge.
@@ -118,7 +126,7 @@ struct CrossingPoint {
 Place locate(const SurfaceSection& section, const CrossingPoint& crossing);
 int component_count(const SurfaceSection& section);
 // 0 for an open component.
-double period(const SurfaceSection& section);
+double period(const SurfaceSection& section, int component);
 CurvePoint at(const SurfaceSection& section, const Place& place);
 
 void trace(const SurfaceSection& section, int component, double from, double to,
@@ -133,5 +141,11 @@ SurfaceSection torus_section(const Torus& torus, bool same_sense, double z_mm, d
 Place locate(const TorusSection& section, const CrossingPoint& crossing);
 CurvePoint at(const TorusSection& section, const Place& place);
 LeaningBasis leaning_basis(const Vector3& axis);
+
+// Tracked curves, in freeform_section.cpp.
+Place locate(const FreeformSection& section, const CrossingPoint& crossing);
+CurvePoint at(const FreeformSection& section, const Place& place);
+void trace(const FreeformSection& section, int component, double from, double to,
+           const Point2& start, const Point2& end, double allowed_mm, std::vector<Segment>& out);
 
 }  // namespace lyr

@@ -1,0 +1,70 @@
+#include "kernel/section/freeform_face.h"
+
+#include <algorithm>
+
+namespace lyr {
+namespace {
+
+HeightRange hull_of(const BSplineSurface& surface) {
+    const auto [low, high] =
+        std::minmax_element(surface.control_points.begin(), surface.control_points.end(),
+                            [](const Point3& a, const Point3& b) { return a.z() < b.z(); });
+    return {low->z(), high->z()};
+}
+
+}  // namespace
+
+FreeformFace::FreeformFace(const Model& model, FaceId face,
+                           const std::vector<double>& vertex_level_mm, HeightRange loops)
+    : model_(model),
+      face_(face),
+      vertex_level_mm_(vertex_level_mm),
+      loops_(loops),
+      hull_(hull_of(*std::get<SharedBSplineSurface>(model[face].surface))) {}
+
+const HeightMesh& FreeformFace::mesh() const {
+    std::call_once(mesh_made_, [&] {
+        mesh_ = height_mesh(std::get<SharedBSplineSurface>(model_[face_].surface));
+    });
+    return mesh_;
+}
+
+const Containment& FreeformFace::containment() const {
+    std::call_once(containment_made_,
+                   [&] { containment_.emplace(model_, face_, vertex_level_mm_); });
+    return *containment_;
+}
+
+HeightRange FreeformFace::heights() const {
+    std::call_once(heights_made_, [&] { heights_ = heights_of_face(); });
+    return heights_;
+}
+
+// A highest point inside the face is a vertex of the mesh, to flat_cell_mm, with no higher neighbour.
+HeightRange FreeformFace::heights_of_face() const {
+    if (loops_.bottom_mm <= hull_.bottom_mm && hull_.top_mm <= loops_.top_mm) return loops_;
+    const std::vector<MeshVertex>& vertices = mesh().vertices;
+    std::vector<bool> has_higher(vertices.size(), false), has_lower(vertices.size(), false);
+    std::vector<bool> used(vertices.size(), false);  // the doubles at a seam are not
+    for (const BorderPiece& piece : mesh().pieces) {
+        const double rise = vertices[piece.to].z_mm - vertices[piece.from].z_mm;
+        used[piece.from] = used[piece.to] = true;
+        has_higher[piece.from] = has_higher[piece.from] || rise > 0;
+        has_lower[piece.from] = has_lower[piece.from] || rise < 0;
+        has_higher[piece.to] = has_higher[piece.to] || rise < 0;
+        has_lower[piece.to] = has_lower[piece.to] || rise > 0;
+    }
+    HeightRange range = loops_;
+    for (std::size_t v = 0; v < vertices.size(); ++v) {
+        const double z = vertices[v].z_mm;
+        const bool beyond =
+            (z > range.top_mm && !has_higher[v]) || (z < range.bottom_mm && !has_lower[v]);
+        if (!beyond || !used[v]) continue;
+        const Point3 point = evaluate(*mesh().surface, vertices[v].uv);
+        if (!containment().holds(point, z)) continue;
+        range = {std::min(range.bottom_mm, z), std::max(range.top_mm, z)};
+    }
+    return range;
+}
+
+}  // namespace lyr

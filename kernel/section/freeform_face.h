@@ -1,0 +1,48 @@
+// What cutting one free-form face asks of its model alone, made when the first plane meets it.
+//
+// Contract
+//  1. Made once, whichever thread asks first; the result does not depend on which.
+//  2. hull() is known without making anything: the face's heights lie within.
+
+#pragma once
+
+#include <mutex>
+#include <optional>
+
+#include "kernel/brep/model.h"
+#include "kernel/section/containment.h"
+#include "kernel/section/height_mesh.h"
+
+namespace lyr {
+
+struct HeightRange {
+    double bottom_mm, top_mm;
+};
+
+class FreeformFace {
+public:
+    // Keeps references. `loops`: the heights of the face's edges.
+    FreeformFace(const Model& model, FaceId face, const std::vector<double>& vertex_level_mm,
+                 HeightRange loops);
+
+    HeightRange hull() const { return hull_; }
+    const HeightMesh& mesh() const;
+    const Containment& containment() const;
+
+    // The heights of the face: those of its edges and of the highest and lowest points inside.
+    HeightRange heights() const;
+
+private:
+    HeightRange heights_of_face() const;
+
+    const Model& model_;
+    FaceId face_;
+    const std::vector<double>& vertex_level_mm_;
+    HeightRange loops_, hull_;
+    mutable std::once_flag mesh_made_, containment_made_, heights_made_;
+    mutable HeightMesh mesh_;
+    mutable std::optional<Containment> containment_;
+    mutable HeightRange heights_{};
+};
+
+}  // namespace lyr

@@ -1,0 +1,111 @@
+// Places on tracked curves. A crossing belongs where the curves come nearest to it: on the plane there is nothing else
+// to go by, and an edge is nearer to its face's section than another sheet of the same face.
+
+#include <algorithm>
+#include <limits>
+
+#include "kernel/section/surface_section.h"
+
+namespace lyr {
+namespace {
+
+struct Foot {
+    double distance2, share;
+};
+
+Foot foot_on_chord(const Point2& from, const Point2& to, const Point2& point) {
+    const Vector2 chord = to - from;
+    const double length2 = chord.squaredNorm();
+    const double share =
+        length2 > 0 ? std::clamp((point - from).dot(chord) / length2, 0.0, 1.0) : 0.0;
+    return {(from + share * chord - point).squaredNorm(), share};
+}
+
+// The chord that a key lies on: from points[i - 1] to points[i].
+std::size_t chord_at(const LevelCurve& curve, double key) {
+    const auto next = std::upper_bound(curve.key.begin() + 1, curve.key.end() - 1, key);
+    return static_cast<std::size_t>(next - curve.key.begin());
+}
+
+CurvePoint point_at(const LevelCurve& curve, double key) {
+    if (curve.closed) key -= curve.length_mm() * std::floor(key / curve.length_mm());
+    const std::size_t i = chord_at(curve, key);
+    const CurvePoint &from = curve.points[i - 1], &to = curve.points[i];
+    const double chord = curve.key[i] - curve.key[i - 1];
+    const double share = chord > 0 ? std::clamp((key - curve.key[i - 1]) / chord, 0.0, 1.0) : 0;
+    const Vector2 tangent = (1 - share) * from.tangent + share * to.tangent;
+    const double length = tangent.norm();
+    // Between neighbours tangents differ little; opposite ones would be a cusp, where either will do.
+    return {(1 - share) * from.point + share * to.point,
+            length > 0 ? Vector2(tangent / length) : from.tangent};
+}
+
+// Appends the curve's points strictly between two keys, which may lie a turn ahead.
+void append_between(const LevelCurve& curve, double from, double to,
+                    std::vector<CurvePoint>& points, std::vector<double>& keys) {
+    const double turn = curve.closed ? curve.length_mm() : 0;
+    const double first = turn > 0 ? turn * std::floor(from / turn) : 0;
+    for (double base = first; base < to || base == first; base += turn) {
+        const auto begin = std::upper_bound(curve.key.begin(), curve.key.end(), from - base);
+        // The last point of a closed curve is the first of the next turn.
+        for (auto key = begin; key != curve.key.end() && base + *key < to; ++key) {
+            if (curve.closed && key + 1 == curve.key.end()) break;
+            points.push_back(curve.points[static_cast<std::size_t>(key - curve.key.begin())]);
+            keys.push_back(base + *key);
+        }
+        if (turn == 0) break;
+    }
+}
+
+}  // namespace
+
+Place locate(const FreeformSection& section, const CrossingPoint& crossing) {
+    const Point2 point = crossing.point.head<2>();
+    Place nearest;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t c = 0; c < section.curves.size(); ++c) {
+        const LevelCurve& curve = section.curves[c];
+        for (std::size_t i = 1; i < curve.points.size(); ++i) {
+            const Foot foot =
+                foot_on_chord(curve.points[i - 1].point, curve.points[i].point, point);
+            if (foot.distance2 >= least) continue;
+            least = foot.distance2;
+            nearest = {static_cast<int>(c),
+                       curve.key[i - 1] + foot.share * (curve.key[i] - curve.key[i - 1])};
+        }
+    }
+    return nearest;
+}
+
+CurvePoint at(const FreeformSection& section, const Place& place) {
+    return point_at(section.curves[static_cast<std::size_t>(place.component)], place.key);
+}
+
+void trace(const FreeformSection& section, int component, double from, double to,
+           const Point2& start, const Point2& end, double allowed_mm, std::vector<Segment>& out) {
+    const LevelCurve& curve = section.curves[static_cast<std::size_t>(component)];
+    const CurvePoint first = point_at(curve, from), last = point_at(curve, to);
+    const Vector2 off_start = start - first.point, off_end = end - last.point;
+    std::vector<CurvePoint> points;
+    std::vector<double> keys;
+    append_between(curve, from, to, points, keys);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const double share = (keys[i] - from) / (to - from);
+        points[i].point += (1 - share) * off_start + share * off_end;
+    }
+    // Points so near an end that the chord's direction would be round-off, or the crossing's own inaccuracy.
+    const auto near = [](const Point2& a, const Vector2& off) {
+        const double least = std::max(level_clearance_mm, 2 * off.norm());
+        return [&a, least](const CurvePoint& p) { return (p.point - a).norm() <= least; };
+    };
+    const auto begin = std::find_if_not(points.begin(), points.end(), near(start, off_start));
+    const auto kept_end = std::find_if_not(std::make_reverse_iterator(points.end()),
+                                           std::make_reverse_iterator(begin), near(end, off_end))
+                              .base();
+    std::vector<CurvePoint> kept{{start, first.tangent}};
+    kept.insert(kept.end(), begin, kept_end);
+    kept.push_back({end, last.tangent});
+    fit_arcs(kept, allowed_mm, out);
+}
+
+}  // namespace lyr

@@ -1,0 +1,256 @@
+// One crossing on each border piece whose ends are on different sides of the plane. A cell's crossings are paired: going
+// counter-clockwise around it, a curve with the high side on its left begins where the border falls through the
+// plane and ends where it rises. In a cell that is monotone in v the curves are graphs over u, which orders them.
+// Curves are then followed from cell to cell, and sampled inside a cell by solving for the plane.
+
+#include "kernel/section/level_curves.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "kernel/geometry/root.h"
+#include "kernel/geometry/tolerance.h"
+#include "kernel/section/bezier_patch.h"
+
+namespace lyr {
+namespace {
+
+constexpr std::uint32_t none = ~std::uint32_t{0};
+
+// A crossing as an end of a cell's curve.
+struct CellEnd {
+    std::int32_t cell;
+    bool is_start;
+    std::uint32_t crossing;
+    Point2 uv;  // in the cell's own parameters, which differ from the neighbour's at a seam
+    double order;
+};
+
+struct CellCurve {
+    std::int32_t cell;
+    CellEnd start, end;
+};
+
+class Tracker {
+public:
+    Tracker(const HeightMesh& mesh, double z_mm, double chord_error_mm)
+        : mesh_(mesh), z_mm_(z_mm), chord_error_mm_(chord_error_mm) {}
+
+    std::vector<LevelCurve> curves() {
+        find_ends();
+        pair_ends();
+        return follow();
+    }
+
+private:
+    void find_ends();
+    void pair_ends();
+    std::vector<LevelCurve> follow();
+    LevelCurve follow_from(std::uint32_t first_curve);
+    void add_end(const BorderPiece& piece, std::int32_t cell, bool cell_is_left, bool rises,
+                 double at, std::uint32_t crossing);
+    void sample(const CellCurve& curve, LevelCurve& out) const;
+    void refine(const CellCurve& curve, double from, const CurvePoint& start, double to,
+                const CurvePoint& end, int depth, LevelCurve& out) const;
+    Point2 solve(const CellCurve& curve, double share) const;
+    Point2 solve_across(const CellCurve& curve, double share) const;
+    CurvePoint point_at(const BezierPatch& patch, const Point2& uv) const;
+
+    const HeightMesh& mesh_;
+    double z_mm_, chord_error_mm_;
+    std::uint32_t crossing_count_ = 0;
+    std::vector<CellEnd> ends_;
+    std::vector<CellCurve> cell_curves_;
+    std::vector<std::uint32_t> curve_from_;  // by crossing
+    std::vector<bool> reached_, followed_;   // by crossing, by cell curve
+};
+
+void Tracker::add_end(const BorderPiece& piece, std::int32_t cell, bool cell_is_left, bool rises,
+                      double at, std::uint32_t crossing) {
+    if (cell < 0) return;
+    const MonotoneCell& c = mesh_.cells[static_cast<std::size_t>(cell)];
+    const Point2 uv = piece.along_u ? Point2(at, cell_is_left ? c.from_v : c.to_v)
+                                    : Point2(cell_is_left ? c.to_u : c.from_u, at);
+    // Along the curve u rises where dz/dv > 0 and v falls where dz/du > 0.
+    double order = 0;
+    if (c.kind == CellKind::graph_over_v) {
+        order = c.rises_u ? -uv.y() : uv.y();
+    } else if (c.kind != CellKind::flat) {
+        order = c.rises_v ? uv.x() : -uv.x();
+    }
+    ends_.push_back({cell, rises != cell_is_left, crossing, uv, order});
+}
+
+void Tracker::find_ends() {
+    mesh_.pieces_by_height.stab(z_mm_, [&](std::uint32_t item) {
+        const BorderPiece& piece = mesh_.pieces[item];
+        const bool rises = mesh_.vertices[piece.from].z_mm <= z_mm_;
+        const IsoLine line(mesh_.patches[piece.patch], piece.along_u, piece.fixed);
+        const double at = line.crossing(z_mm_, piece.start, piece.end, !rises);
+        const std::uint32_t crossing = crossing_count_++;
+        add_end(piece, piece.left, true, rises, at, crossing);
+        add_end(piece, piece.right, false, rises, at, crossing);
+    });
+}
+
+void Tracker::pair_ends() {
+    std::sort(ends_.begin(), ends_.end(), [](const CellEnd& a, const CellEnd& b) {
+        return std::tie(a.cell, a.is_start, a.order, a.crossing) <
+               std::tie(b.cell, b.is_start, b.order, b.crossing);
+    });
+    curve_from_.assign(crossing_count_, none);
+    reached_.assign(crossing_count_, false);
+    for (std::size_t first = 0; first < ends_.size();) {
+        std::size_t starts = first, last = first;
+        while (last < ends_.size() && ends_[last].cell == ends_[first].cell) ++last;
+        while (starts < last && !ends_[starts].is_start) ++starts;
+        // As many start as end: the border of a cell rises as often as it falls.
+        for (std::size_t i = 0; first + i < starts; ++i) {
+            const CellEnd &end = ends_[first + i], &start = ends_[starts + i];
+            curve_from_[start.crossing] = static_cast<std::uint32_t>(cell_curves_.size());
+            reached_[end.crossing] = true;
+            cell_curves_.push_back({start.cell, start, end});
+        }
+        first = last;
+    }
+}
+
+std::vector<LevelCurve> Tracker::follow() {
+    std::vector<LevelCurve> result;
+    followed_.assign(cell_curves_.size(), false);
+    for (std::uint32_t c = 0; c < cell_curves_.size(); ++c) {
+        if (!reached_[cell_curves_[c].start.crossing]) result.push_back(follow_from(c));
+    }
+    for (std::uint32_t c = 0; c < cell_curves_.size(); ++c) {
+        if (!followed_[c]) result.push_back(follow_from(c));
+    }
+    return result;
+}
+
+LevelCurve Tracker::follow_from(std::uint32_t first_curve) {
+    LevelCurve result{{}, {}, false};
+    std::uint32_t next = first_curve;
+    while (next != none && !followed_[next]) {
+        followed_[next] = true;
+        sample(cell_curves_[next], result);
+        next = curve_from_[cell_curves_[next].end.crossing];
+    }
+    result.closed = next == first_curve;
+    if (result.closed) result.points.back().point = result.points.front().point;
+    result.key.push_back(0);
+    for (std::size_t i = 1; i < result.points.size(); ++i) {
+        result.key.push_back(result.key.back() +
+                             (result.points[i].point - result.points[i - 1].point).norm());
+    }
+    return result;
+}
+
+CurvePoint Tracker::point_at(const BezierPatch& patch, const Point2& uv) const {
+    const Partials at = partials(patch, uv);
+    const Vector2 along = (at.dv.z() * at.du - at.du.z() * at.dv).head<2>();
+    const double length = along.norm();
+    return {at.point.head<2>(), length > 0 ? Vector2(along / length) : Vector2::Zero()};
+}
+
+// Between the ends of a curve that is monotone in both: across the line between them, in the box that they span.
+Point2 Tracker::solve_across(const CellCurve& curve, double share) const {
+    const MonotoneCell& cell = mesh_.cells[static_cast<std::size_t>(curve.cell)];
+    const BezierPatch& patch = mesh_.patches[cell.patch];
+    const Vector2 along = curve.end.uv - curve.start.uv;
+    const Vector2 up(std::abs(along.x()) * (cell.rises_u ? 1 : -1),
+                     std::abs(along.y()) * (cell.rises_v ? 1 : -1));
+    const Point2 base = curve.start.uv + share * along;
+    const double reach = std::min(share, 1 - share);
+    const auto above = [&](double t) {
+        const Partials at = partials(patch, base + t * up);
+        return std::pair(at.point.z() - z_mm_, at.du.z() * up.x() + at.dv.z() * up.y());
+    };
+    return base + bracketed_root(above, -reach, reach, false, 0, resolution_mm / 100) * up;
+}
+
+Point2 Tracker::solve(const CellCurve& curve, double share) const {
+    const MonotoneCell& cell = mesh_.cells[static_cast<std::size_t>(curve.cell)];
+    const Point2 chord = curve.start.uv + share * (curve.end.uv - curve.start.uv);
+    const BezierPatch& patch = mesh_.patches[cell.patch];
+    switch (cell.kind) {
+        case CellKind::flat:
+            return chord;
+        case CellKind::both:
+            return solve_across(curve, share);
+        case CellKind::graph_over_u:
+            return {chord.x(), IsoLine(patch, false, chord.x())
+                                   .crossing(z_mm_, cell.from_v, cell.to_v, !cell.rises_v)};
+        case CellKind::graph_over_v:
+            return {IsoLine(patch, true, chord.y())
+                        .crossing(z_mm_, cell.from_u, cell.to_u, !cell.rises_u),
+                    chord.y()};
+    }
+    return chord;
+}
+
+double angle_between(const Vector2& a, const Vector2& b) {
+    return std::abs(std::atan2(cross(a, b), a.dot(b)));
+}
+
+// Halves a span until chords are near enough. An arc that turns by a and b against its chord c at the ends lies up to
+// c (a + b) / 8 off it, and half as many chords again are kept: a quarter of that.
+void Tracker::refine(const CellCurve& curve, double from, const CurvePoint& start, double to,
+                     const CurvePoint& end, int depth, LevelCurve& out) const {
+    constexpr int deepest = 40;
+    const Vector2 chord = end.point - start.point;
+    const double length = chord.norm();
+    if (length <= resolution_mm || depth > deepest) return;
+    const double expected =
+        length / 8 * (angle_between(start.tangent, chord) + angle_between(chord, end.tangent));
+    // So flat that even an error of this estimate by its own size would not matter.
+    if (expected <= chord_error_mm_ / 8 && depth > 0) return;
+    const double middle = 0.5 * (from + to);
+    const BezierPatch& patch =
+        mesh_.patches[mesh_.cells[static_cast<std::size_t>(curve.cell)].patch];
+    const CurvePoint at = point_at(patch, solve(curve, middle));
+    const double off = std::abs(cross(chord, at.point - start.point)) / length;
+    const bool fine = std::max(expected, off) <= 4 * chord_error_mm_;
+    if (!fine) refine(curve, from, start, middle, at, depth + 1, out);
+    out.points.push_back(at);
+    if (!fine) refine(curve, middle, at, to, end, depth + 1, out);
+}
+
+void Tracker::sample(const CellCurve& curve, LevelCurve& out) const {
+    const MonotoneCell& cell = mesh_.cells[static_cast<std::size_t>(curve.cell)];
+    const BezierPatch& patch = mesh_.patches[cell.patch];
+    CurvePoint start = point_at(patch, curve.start.uv), end = point_at(patch, curve.end.uv);
+    const Vector2 chord = end.point - start.point;
+    const double length = chord.norm();
+    // At a level point of the surface, and in a flat cell, the tangent says nothing.
+    const Vector2 direction = length > 0 ? Vector2(chord / length) : start.tangent;
+    if (cell.kind == CellKind::flat || start.tangent.isZero()) start.tangent = direction;
+    if (cell.kind == CellKind::flat || end.tangent.isZero()) end.tangent = direction;
+    if (out.points.empty()) {
+        out.points.push_back(start);
+    } else if (length <= resolution_mm) {
+        return;
+    } else if (angle_between(out.points.back().tangent, start.tangent) > corner_rad) {
+        out.points.push_back({out.points.back().point, start.tangent});
+    }
+    if (cell.kind != CellKind::flat) refine(curve, 0, start, 1, end, 0, out);
+    out.points.push_back(end);
+}
+
+}  // namespace
+
+std::vector<LevelCurve> level_curves(const HeightMesh& mesh, double z_mm, bool forward,
+                                     double chord_error_mm) {
+    std::vector<LevelCurve> curves = Tracker(mesh, z_mm, chord_error_mm).curves();
+    if (forward) return curves;
+    for (LevelCurve& curve : curves) {
+        std::reverse(curve.points.begin(), curve.points.end());
+        std::reverse(curve.key.begin(), curve.key.end());
+        const double length = curve.key.front();
+        for (CurvePoint& point : curve.points) point.tangent = -point.tangent;
+        for (double& key : curve.key) key = length - key;
+    }
+    return curves;
+}
+
+}  // namespace lyr

@@ -1,0 +1,95 @@
+// Sections of free-form solids: areas that add up to the volume, points on the surface, whatever the position.
+
+#include <doctest/doctest.h>
+
+#include "kernel/brep/placement.h"
+#include "kernel/freeform_solids.h"
+#include "kernel/geometry/random_curves.h"
+#include "kernel/section/cutter.h"
+
+using namespace lyr;
+using namespace lyr::testing;
+
+namespace {
+
+double area_of(const Section& section) {
+    double area = 0;
+    for (const SolidSection& solid : section.solids) {
+        for (const Contour& contour : solid.contours) area += area_mm2(contour);
+    }
+    return area;
+}
+
+double length_of(const Section& section) {
+    double length = 0;
+    for (const SolidSection& solid : section.solids) {
+        for (const Contour& contour : solid.contours) length += length_mm(contour);
+    }
+    return length;
+}
+
+}  // namespace
+
+TEST_CASE("free-form: the areas of a bent cube's sections add up to its volume") {
+    const Tolerance tolerance{0.001};
+    test::Random random(5);
+    for (unsigned seed = 0; seed < 24; ++seed) {
+        CAPTURE(seed);
+        const BezierVolume volume(1 + static_cast<int>(seed % 4), 20, 0.35, seed % 3 == 2, seed);
+        Eigen::Affine3d position =
+            seed < 4 ? Eigen::Affine3d::Identity() : random.similarity(false);
+        const Model model = transformed(bent_cube(volume), position);
+        const Cutter cutter(model, tolerance);
+        const HeightRange range = cutter.height_range();
+        constexpr int planes = 300;
+        const double step = (range.top_mm - range.bottom_mm) / planes;
+        double sum = 0, allowed = 0;
+        for (int i = 0; i < planes; ++i) {
+            CAPTURE(i);
+            const Section section = cutter.cut(range.bottom_mm + (i + 0.5) * step);
+            CHECK(section.open == 0);
+            CHECK(section.diagnostics.empty());
+            sum += step * area_of(section);
+            allowed += step * length_of(section) * tolerance.total_mm;
+        }
+        const double exact = volume.volume_mm3();
+        CHECK(std::abs(sum - exact) < 2e-4 * exact + allowed);
+    }
+}
+
+TEST_CASE("free-form: contours lie on the surface within the tolerance") {
+    const Tolerance tolerance{0.005};
+    test::Random random(6);
+    double worst = 0;
+    for (unsigned seed = 0; seed < 8; ++seed) {
+        CAPTURE(seed);
+        const BezierVolume volume(2 + static_cast<int>(seed % 3), 20, 0.35, seed % 2 == 1, seed);
+        const Model model = transformed(bent_cube(volume), random.similarity(false));
+        const Cutter cutter(model, tolerance);
+        const HeightRange range = cutter.height_range();
+        for (int i = 0; i < 10; ++i) {
+            const double z = range.bottom_mm + (i + 0.5) / 10 * (range.top_mm - range.bottom_mm);
+            for (const SolidSection& solid : cutter.cut(z).solids) {
+                for (const Contour& contour : solid.contours) {
+                    const Path& path = std::get<Path>(contour);
+                    Point2 from = path.start;
+                    for (const Segment& segment : path.segments) {
+                        for (const double share : {0.0, 0.13, 0.37, 0.5, 0.71, 0.9}) {
+                            const Point2 p = point_at(from, segment, share);
+                            double least = 1e9;
+                            for (const Face& face : model.faces) {
+                                const Point3 q(p.x(), p.y(), z);
+                                const Point2 uv = invert(face.surface, q);
+                                least = std::min(least, (evaluate(face.surface, uv) - q).norm());
+                            }
+                            worst = std::max(worst, least);
+                        }
+                        from = segment.end;
+                    }
+                }
+            }
+        }
+    }
+    MESSAGE("farthest: " << worst);
+    CHECK(worst <= tolerance.fit_mm() + tolerance.trace_mm());
+}
