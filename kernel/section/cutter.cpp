@@ -122,6 +122,11 @@ std::vector<Point3> level_points(const Surface& surface) {
     return points;
 }
 
+Point2 some_point(const Contour& contour) {
+    const auto* circle = std::get_if<FullCircle>(&contour);
+    return circle ? circle->centre : std::get<Path>(contour).start;
+}
+
 void sort_unique(std::vector<double>& heights) {
     std::sort(heights.begin(), heights.end());
     heights.erase(std::unique(heights.begin(), heights.end()), heights.end());
@@ -432,6 +437,21 @@ void Cutter::stitch(Work& work) const {
     }
 }
 
+void Cutter::check_areas(Work& work) const {
+    for (const SolidSection& part : work.section.solids) {
+        double area = 0, length = 0;
+        for (const Contour& contour : part.contours) {
+            area += area_mm2(contour);
+            length += length_mm(contour);
+        }
+        if (area >= -tolerance_.total_mm * length) continue;
+        ++work.section.open;
+        const Point2 at = some_point(part.contours.front());
+        report(work, "the solid's section has a negative area: its faces contradict each other",
+               model_[part.solid].source, {at.x(), at.y(), work.z_mm});
+    }
+}
+
 Section Cutter::cut(double z_mm) const {
     Work work{.z_mm = clear_of_levels(z_mm)};
     work.section.z_mm = z_mm;
@@ -448,6 +468,7 @@ Section Cutter::cut(double z_mm) const {
         }
         work.section.solids.back().contours.push_back(std::move(contour));
     }
+    check_areas(work);
     return std::move(work.section);
 }
 

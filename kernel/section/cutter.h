@@ -37,7 +37,9 @@ struct SolidSection {
 struct Section {
     double z_mm = 0;
     std::vector<SolidSection> solids;  // those the plane meets, in the model's order
-    std::uint32_t open = 0;            // ends that have no continuation
+    // Ends that have no continuation, and solids whose area comes out negative: a face's part was taken for the rest
+    // of its surface, or the shell is inside out.
+    std::uint32_t open = 0;
     Diagnostics diagnostics;
 };
 
@@ -88,6 +90,7 @@ private:
                               const std::vector<bool>& crossed, Work& work) const;
     const Containment& containment(FaceId face) const;
     void stitch(Work& work) const;
+    void check_areas(Work& work) const;
     void report(Work& work, std::string message, SourceId source, const Point3& point) const;
 
     const Model& model_;
