@@ -27,4 +27,7 @@ struct BezierPiece {
 
 std::vector<BezierPiece> bezier_pieces(const BSplineCurve& curve, double from, double to);
 
+// One after the other, both of one degree and clamped at their ends; the second one's knots are moved to follow.
+BSplineCurve joined(BSplineCurve first, BSplineCurve second);
+
 }  // namespace lyr

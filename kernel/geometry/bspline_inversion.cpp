@@ -16,13 +16,13 @@
 
 #include "kernel/geometry/bspline_jet.h"
 #include "kernel/geometry/bspline_surface.h"
+#include "kernel/geometry/distance_cell.h"
 #include "kernel/geometry/tolerance.h"
 
 namespace lyr {
 
 namespace {
 
-using Homogeneous = Eigen::Vector4d;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 Vector2 extent(const BSplineSurface& s) {
@@ -163,117 +163,6 @@ Foot descend(const BSplineSurface& s, const Point3& point, const Point2& start) 
     return best;
 }
 
-// A part of a Bezier patch, in homogeneous coordinates about the point in question.
-struct Cell {
-    Point2 low = Point2::Zero(), high = Point2::Zero();
-    std::vector<Homogeneous> points = {};
-};
-
-// The squared distance along a cell in Bernstein form, of twice the degrees: numerator and squared weight.
-class DistanceForm {
-public:
-    DistanceForm(const Cell& cell, int degree_u, int degree_v)
-        : size_u_(2 * static_cast<std::size_t>(degree_u) + 1),
-          size_v_(2 * static_cast<std::size_t>(degree_v) + 1),
-          numerator_(size_u_ * size_v_, 0.0),
-          weight_(size_u_ * size_v_, 0.0) {
-        const std::size_t order_u = size_u_ / 2 + 1, order_v = size_v_ / 2 + 1;
-        // Scaled by binomials, coefficients multiply like those of ordinary polynomials.
-        const std::vector<double> row_u = binomials(order_u - 1), row_v = binomials(order_v - 1);
-        std::vector<Homogeneous> scaled(cell.points);
-        for (std::size_t i = 0; i < order_u; ++i) {
-            for (std::size_t j = 0; j < order_v; ++j)
-                scaled[i * order_v + j] *= row_u[i] * row_v[j];
-        }
-        for (std::size_t i = 0; i < scaled.size(); ++i) {
-            for (std::size_t k = 0; k < scaled.size(); ++k) {
-                const std::size_t at =
-                    (i / order_v + k / order_v) * size_v_ + i % order_v + k % order_v;
-                numerator_[at] += scaled[i].head<3>().dot(scaled[k].head<3>());
-                weight_[at] += scaled[i].w() * scaled[k].w();
-            }
-        }
-        const std::vector<double> rows = binomials(size_u_ - 1), columns = binomials(size_v_ - 1);
-        for (std::size_t i = 0; i < size_u_; ++i) {
-            for (std::size_t j = 0; j < size_v_; ++j) {
-                numerator_[i * size_v_ + j] /= rows[i] * columns[j];
-                weight_[i * size_v_ + j] /= rows[i] * columns[j];
-            }
-        }
-    }
-
-    double lower_bound_mm() const {
-        double bound = infinity;
-        for (std::size_t i = 0; i < numerator_.size(); ++i) {
-            bound = std::min(bound, numerator_[i] / weight_[i]);
-        }
-        return std::sqrt(std::max(bound, 0.0));
-    }
-
-    // Of the numerator: where weights are one, of the squared distance.
-    bool is_convex() const {
-        double least_uu = infinity, least_vv = infinity, most_uv = 0;
-        const auto c = [&](std::size_t i, std::size_t j) { return numerator_[i * size_v_ + j]; };
-        for (std::size_t i = 0; i < size_u_; ++i) {
-            for (std::size_t j = 0; j < size_v_; ++j) {
-                if (i > 1) {
-                    least_uu = std::min(least_uu, c(i, j) - 2 * c(i - 1, j) + c(i - 2, j));
-                }
-                if (j > 1) {
-                    least_vv = std::min(least_vv, c(i, j) - 2 * c(i, j - 1) + c(i, j - 2));
-                }
-                if (i > 0 && j > 0) {
-                    most_uv = std::max(
-                        most_uv, std::abs(c(i, j) - c(i - 1, j) - c(i, j - 1) + c(i - 1, j - 1)));
-                }
-            }
-        }
-        const auto m = static_cast<double>(size_u_ - 1), n = static_cast<double>(size_v_ - 1);
-        return least_uu > 0 && least_vv > 0 &&
-               (m - 1) * (n - 1) * least_uu * least_vv > m * n * most_uv * most_uv;
-    }
-
-    bool varies_more_along_u() const {
-        double along_u = 0, along_v = 0;
-        for (std::size_t i = 0; i < size_u_; ++i) {
-            for (std::size_t j = 0; j < size_v_; ++j) {
-                const double here = numerator_[i * size_v_ + j];
-                if (i > 0) {
-                    along_u = std::max(along_u, std::abs(here - numerator_[(i - 1) * size_v_ + j]));
-                }
-                if (j > 0) {
-                    along_v = std::max(along_v, std::abs(here - numerator_[i * size_v_ + j - 1]));
-                }
-            }
-        }
-        return along_u >= along_v;
-    }
-
-private:
-    static std::vector<double> binomials(std::size_t degree) {
-        std::vector<double> row(degree + 1, 1.0);
-        for (std::size_t i = 1; i < row.size(); ++i) {
-            row[i] = row[i - 1] * static_cast<double>(degree - i + 1) / static_cast<double>(i);
-        }
-        return row;
-    }
-
-    std::size_t size_u_, size_v_;
-    std::vector<double> numerator_, weight_;
-};
-
-// de Casteljau at the middle of rows of `count` points, `stride` apart; `right` holds the whole before.
-void halve(std::vector<Homogeneous>& left, std::vector<Homogeneous>& right, std::size_t first,
-           std::size_t count, std::size_t stride) {
-    for (std::size_t level = count; level > 0; --level) {
-        left[first + (count - level) * stride] = right[first];
-        for (std::size_t i = 0; i + 1 < level; ++i) {
-            Homogeneous& here = right[first + i * stride];
-            here = 0.5 * (here + right[first + (i + 1) * stride]);
-        }
-    }
-}
-
 class NearestPoint {
 public:
     NearestPoint(const BSplineSurface& surface, const Point3& point) : s_(surface), point_(point) {}
@@ -290,7 +179,7 @@ public:
             queue_.pop_back();
             if (!worth_a_look(task.bound_mm)) break;
             if (task.cell.points.empty()) {
-                push(cell_of_span(task.span_u, task.span_v));
+                push(cell_about(bezier_patch(s_, task.span_u, task.span_v), point_));
             } else {
                 visit(task);
             }
@@ -365,18 +254,8 @@ private:
         }
     }
 
-    Cell cell_of_span(std::size_t u, std::size_t v) const {
-        BezierPatch patch = bezier_patch(s_, u, v);
-        for (Homogeneous& c : patch.control_points) c.head<3>() -= c.w() * point_;
-        return {{patch.from_u, patch.from_v},
-                {patch.to_u, patch.to_v},
-                std::move(patch.control_points)};
-    }
-
     void push(Cell cell) {
-        Eigen::AlignedBox3d box;
-        for (const Homogeneous& c : cell.points) box.extend(Point3(c.head<3>() / c.w()));
-        if (!worth_a_look(box.exteriorDistance(Point3::Zero()))) return;
+        if (!worth_a_look(box_distance_mm(cell))) return;
         const DistanceForm form(cell, s_.degree_u, s_.degree_v);
         const double bound = form.lower_bound_mm();
         if (!worth_a_look(bound)) return;
@@ -385,31 +264,19 @@ private:
     }
 
     void visit(Task& task) {
-        Cell& cell = task.cell;
-        const Point2 middle = 0.5 * (cell.low + cell.high);
+        const Window window = task.cell.window;
+        const Point2 middle = 0.5 * (window.low + window.high);
         if (task.convex) {
-            offer(descend(s_, point_, middle, {cell.low, cell.high}));
+            offer(descend(s_, point_, middle, window));
             return;
         }
         if ((evaluate(s_, middle) - point_).norm() < best_.distance_mm) descend_from(middle);
         constexpr double smallest_share = 1e-15;  // of the domain: the spacing of doubles
         const int along = task.split_u ? 0 : 1;
-        if (cell.high[along] - cell.low[along] <= smallest_share * extent(s_)[along]) return;
-        Cell left = cell;
-        const auto order_u = static_cast<std::size_t>(s_.degree_u) + 1;
-        const auto order_v = static_cast<std::size_t>(s_.degree_v) + 1;
-        if (task.split_u) {
-            for (std::size_t j = 0; j < order_v; ++j) {
-                halve(left.points, cell.points, j, order_u, order_v);
-            }
-        } else {
-            for (std::size_t i = 0; i < order_u; ++i) {
-                halve(left.points, cell.points, i * order_v, order_v, 1);
-            }
-        }
-        left.high[along] = cell.low[along] = middle[along];
+        if (window.high[along] - window.low[along] <= smallest_share * extent(s_)[along]) return;
+        auto [left, right] = halves(std::move(task.cell), s_.degree_u, s_.degree_v, along);
         push(std::move(left));
-        push(std::move(cell));
+        push(std::move(right));
     }
 
     const BSplineSurface& s_;
