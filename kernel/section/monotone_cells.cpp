@@ -4,6 +4,7 @@
 #include "kernel/section/monotone_cells.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace lyr {
@@ -72,31 +73,31 @@ Slopes slopes(const HeightPatch& patch, bool along_u, const Range& range) {
     return result;
 }
 
-// How much the differences along one parameter change in the direction of u and of v, as shares of their size.
+// The greatest second differences of the height along u and along v: which way to divide. Those in millimetres, not
+// as shares of the slopes: where a slope is but round-off (a level circle), dividing along it leads nowhere.
 struct Bending {
     double along_u = 0, along_v = 0;
 };
 
-void add_bending(const HeightPatch& patch, bool of_u, const Slopes& slope, Bending& bending) {
-    const double size = std::max(std::abs(slope.low), std::abs(slope.high));
-    if (size == 0) return;
-    const int last_i = patch.degree_u - (of_u ? 1 : 0), last_j = patch.degree_v - (of_u ? 0 : 1);
-    const auto difference = [&](int i, int j) {
-        return patch.z[of_u ? patch.at(i + 1, j) : patch.at(i, j + 1)] - patch.z[patch.at(i, j)];
+Bending bending(const HeightPatch& patch) {
+    Bending result;
+    const auto z = [&](int i, int j) {
+        const std::size_t k = patch.at(i, j);
+        return patch.w.empty() ? patch.z[k] : patch.z[k] / patch.w[k];
     };
-    double most_u = 0, most_v = 0;
-    for (int i = 0; i <= last_i; ++i) {
-        for (int j = 0; j <= last_j; ++j) {
-            if (i < last_i) {
-                most_u = std::max(most_u, std::abs(difference(i + 1, j) - difference(i, j)));
+    for (int i = 0; i <= patch.degree_u; ++i) {
+        for (int j = 0; j <= patch.degree_v; ++j) {
+            if (i >= 2) {
+                result.along_u =
+                    std::max(result.along_u, std::abs(z(i, j) - 2 * z(i - 1, j) + z(i - 2, j)));
             }
-            if (j < last_j) {
-                most_v = std::max(most_v, std::abs(difference(i, j + 1) - difference(i, j)));
+            if (j >= 2) {
+                result.along_v =
+                    std::max(result.along_v, std::abs(z(i, j) - 2 * z(i, j - 1) + z(i, j - 2)));
             }
         }
     }
-    bending.along_u += most_u / size;
-    bending.along_v += most_v / size;
+    return result;
 }
 
 // De Casteljau on one line of `count` coefficients: `left` and `right` may be the line itself.
@@ -125,39 +126,61 @@ void split_coefficients(const HeightPatch& patch, const std::vector<double>& c, 
     }
 }
 
-// Where the derivative changes its sign along the patch's middle line, or else the middle.
-double division(const HeightPatch& patch, bool along_u) {
+using Row = std::array<double, highest_surface_degree + 1>;
+
+double value_at(const Row& coefficients, int degree, double t) {
+    Row c = coefficients;
+    for (int level = degree; level > 0; --level) {
+        for (std::size_t i = 0; i < static_cast<std::size_t>(level); ++i) {
+            c[i] = (1 - t) * c[i] + t * c[i + 1];
+        }
+    }
+    return c[0];
+}
+
+// Coefficients, along one parameter at the middle of the other, of the height's derivative by the one or the other.
+// For rational patches those of the control points' heights, which is good enough to aim at: the next division aims better.
+Row middle_slope(const HeightPatch& patch, bool along_u, bool by_other, int& degree) {
     const int count = along_u ? patch.degree_u + 1 : patch.degree_v + 1;
     const int across = along_u ? patch.degree_v + 1 : patch.degree_u + 1;
-    double middle[highest_surface_degree + 1], work[highest_surface_degree + 1];
+    Row middle{}, line{};
     for (int i = 0; i < count; ++i) {
         for (int k = 0; k < across; ++k) {
             const std::size_t at = along_u ? patch.at(i, k) : patch.at(k, i);
-            work[k] = patch.w.empty() ? patch.z[at] : patch.z[at] / patch.w[at];
+            line[static_cast<std::size_t>(k)] =
+                patch.w.empty() ? patch.z[at] : patch.z[at] / patch.w[at];
         }
-        for (int level = across - 1; level > 0; --level) {
-            for (int k = 0; k < level; ++k) work[k] = 0.5 * (work[k] + work[k + 1]);
+        if (by_other) {
+            for (std::size_t k = 0; k + 1 < static_cast<std::size_t>(across); ++k) {
+                line[k] = line[k + 1] - line[k];
+            }
         }
-        middle[i] = work[0];
+        middle[static_cast<std::size_t>(i)] = value_at(line, across - (by_other ? 2 : 1), 0.5);
     }
-    // The control polygon's turn is near the curve's: good enough to aim at, and the next division aims better.
-    const auto slope = [&](double t) {
-        double d[highest_surface_degree + 1];
-        for (int i = 0; i + 1 < count; ++i) d[i] = middle[i + 1] - middle[i];
-        for (int level = count - 2; level > 0; --level) {
-            for (int i = 0; i < level; ++i) d[i] = (1 - t) * d[i] + t * d[i + 1];
-        }
-        return d[0];
-    };
+    degree = by_other ? count - 1 : count - 2;
+    if (by_other) return middle;
+    for (std::size_t i = 0; i <= static_cast<std::size_t>(degree); ++i) {
+        middle[i] = middle[i + 1] - middle[i];
+    }
+    return middle;
+}
+
+// Where one of the derivatives changes its sign along the patch's middle line, or else the middle.
+double division(const HeightPatch& patch, bool along_u) {
     constexpr double nearest_border = 1.0 / 16;
-    double low = nearest_border, high = 1 - nearest_border;
-    const bool rises = slope(low) > 0;
-    if (count < 3 || rises == (slope(high) > 0)) return 0.5;
-    while (true) {
-        const double t = 0.5 * (low + high);
-        if (t <= low || t >= high) return t;
-        ((slope(t) > 0) == rises ? low : high) = t;
+    for (const bool by_other : {false, true}) {
+        int degree = 0;
+        const Row slope = middle_slope(patch, along_u, by_other, degree);
+        if (degree < 1) continue;
+        double low = nearest_border, high = 1 - nearest_border;
+        const bool rises = value_at(slope, degree, low) > 0;
+        if (rises == (value_at(slope, degree, high) > 0)) continue;
+        for (double t = 0.5 * (low + high); low < t && t < high; t = 0.5 * (low + high)) {
+            ((value_at(slope, degree, t) > 0) == rises ? low : high) = t;
+        }
+        return low;
     }
+    return 0.5;
 }
 
 void divide(HeightPatch patch, std::uint32_t index, std::vector<MonotoneCell>& cells) {
@@ -171,10 +194,8 @@ void divide(HeightPatch patch, std::uint32_t index, std::vector<MonotoneCell>& c
     if (u.steady()) return emit(CellKind::graph_over_v);
     if (u.one_sign() && v.one_sign()) return emit(CellKind::both);
     if (range.high - range.low <= flat_cell_mm) return emit(CellKind::flat);
-    Bending bending;
-    add_bending(patch, true, u, bending);
-    add_bending(patch, false, v, bending);
-    const bool along_u = bending.along_u > bending.along_v;
+    const Bending bend = bending(patch);
+    const bool along_u = bend.along_u > bend.along_v;
     const double t = division(patch, along_u);
     const double from = along_u ? patch.from_u : patch.from_v;
     const double to = along_u ? patch.to_u : patch.to_v;

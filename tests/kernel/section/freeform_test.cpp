@@ -93,3 +93,64 @@ TEST_CASE("free-form: contours lie on the surface within the tolerance") {
     MESSAGE("farthest: " << worst);
     CHECK(worst <= tolerance.fit_mm() + tolerance.trace_mm());
 }
+
+namespace {
+
+// A solid of one face without edges.
+Model whole(const BSplineSurface& surface) {
+    Builder b;
+    b.face(std::make_shared<const BSplineSurface>(surface), true, {});
+    return b.finish();
+}
+
+BSplineSurface spun(const Curve& profile, double from, double to) {
+    return revolved(rational(profile, from, to), Frame{});
+}
+
+// In the x-z plane, from the lowest point to the highest: outward is d/du x d/dv.
+Frame upright(const Point3& centre) {
+    return {centre, Vector3::UnitX(), Vector3::UnitZ(), -Vector3::UnitY()};
+}
+
+}  // namespace
+
+TEST_CASE("free-form: balls and rings that are one closed face, in every position") {
+    struct Solid {
+        const char* name;
+        Model model;
+        double volume_mm3;
+    };
+    const Frame at_axis = upright(Point3::Zero());
+    const std::vector<Solid> solids{
+        {"ball", whole(spun(Circle{at_axis, 5}, -pi / 2, pi / 2)), 4 * pi / 3 * 125},
+        {"ellipsoid", whole(spun(Ellipse{at_axis, 7, 4}, -pi / 2, pi / 2)), 4 * pi / 3 * 49 * 4},
+        {"ring", whole(spun(Circle{upright({6, 0, 0}), 2}, -pi, pi)), 2 * pi * pi * 6 * 4}};
+    const Tolerance tolerance{0.001};
+    test::Random random(8);
+    for (const Solid& solid : solids) {
+        CAPTURE(solid.name);
+        for (int number = 0; number < 12; ++number) {
+            CAPTURE(number);
+            Eigen::Affine3d position = Eigen::Affine3d::Identity();
+            if (number == 1) position = Eigen::AngleAxisd(pi / 2, Vector3::UnitX());
+            if (number == 2) position = Eigen::AngleAxisd(1e-6, Vector3::UnitX());
+            if (number > 2) position = random.similarity(false);
+            const Model model = transformed(solid.model, position);
+            const Cutter cutter(model, tolerance);
+            const HeightRange range = cutter.height_range();
+            constexpr int planes = 300;
+            const double step = (range.top_mm - range.bottom_mm) / planes;
+            double sum = 0, allowed = 0;
+            for (int i = 0; i < planes; ++i) {
+                CAPTURE(i);
+                const Section section = cutter.cut(range.bottom_mm + (i + 0.5) * step);
+                CHECK(section.open == 0);
+                CHECK(section.diagnostics.empty());
+                CHECK(area_of(section) > 0);
+                sum += step * area_of(section);
+                allowed += step * length_of(section) * tolerance.total_mm;
+            }
+            CHECK(std::abs(sum - solid.volume_mm3) < 2e-4 * solid.volume_mm3 + allowed);
+        }
+    }
+}
