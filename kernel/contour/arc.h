@@ -9,6 +9,7 @@
 
 #pragma once
 
+#include <cmath>
 #include <optional>
 
 #include "kernel/geometry/vector.h"
@@ -27,6 +28,11 @@ struct ArcCircle {
 
 inline double cross(const Vector2& a, const Vector2& b) {
     return a.x() * b.y() - a.y() * b.x();
+}
+
+// In [0, pi].
+inline double angle_between(const Vector2& a, const Vector2& b) {
+    return std::abs(std::atan2(cross(a, b), a.dot(b)));
 }
 
 // The angle swept, signed, in (-2 pi, 2 pi); 0 for a line.

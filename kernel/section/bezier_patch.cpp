@@ -12,22 +12,38 @@ namespace {
 
 using Row = std::array<double, highest_surface_degree + 1>;
 
-// Bernstein polynomials of a degree at t, and their derivatives.
-void bernstein_basis(int degree, double t, Row& value, Row& slope) {
-    const auto n = static_cast<std::size_t>(degree);
-    value[0] = 1;
-    slope.fill(0);
-    for (std::size_t d = 1; d <= n; ++d) {
-        if (d == n) {
-            // From degree n - 1: B'_i = n (B_{i-1} - B_i).
-            const auto factor = static_cast<double>(n);
-            slope[0] = -factor * value[0];
-            for (std::size_t i = 1; i < n; ++i) slope[i] = factor * (value[i - 1] - value[i]);
-            slope[n] = factor * value[n - 1];
+// binomials[n][i]: exact in a double up to the highest degree.
+constexpr auto binomials = [] {
+    std::array<Row, highest_surface_degree + 1> table{};
+    for (std::size_t n = 0; n < table.size(); ++n) {
+        table[n][0] = 1;
+        for (std::size_t i = 1; i <= n; ++i) {
+            table[n][i] = table[n - 1][i - 1] + (i < n ? table[n - 1][i] : 0);
         }
-        value[d] = t * value[d - 1];
-        for (std::size_t i = d - 1; i > 0; --i) value[i] = t * value[i - 1] + (1 - t) * value[i];
-        value[0] *= 1 - t;
+    }
+    return table;
+}();
+
+// Bernstein polynomials of a degree at t.
+void bernstein_basis(std::size_t n, double t, Row& value) {
+    double power = 1;
+    for (std::size_t i = 0; i <= n; ++i, power *= t) value[i] = binomials[n][i] * power;
+    power = 1;
+    for (std::size_t i = n + 1; i-- > 0; power *= 1 - t) value[i] *= power;
+}
+
+// And their derivatives, from those of one degree less: B'_i = n (B_{i-1} - B_i).
+void bernstein_basis(std::size_t n, double t, Row& value, Row& slope) {
+    Row lower;
+    bernstein_basis(n - 1, t, lower);
+    const auto factor = static_cast<double>(n);
+    slope[0] = -factor * lower[0];
+    slope[n] = factor * lower[n - 1];
+    value[0] = (1 - t) * lower[0];
+    value[n] = t * lower[n - 1];
+    for (std::size_t i = 1; i < n; ++i) {
+        slope[i] = factor * (lower[i - 1] - lower[i]);
+        value[i] = t * lower[i - 1] + (1 - t) * lower[i];
     }
 }
 
@@ -93,13 +109,14 @@ void append_turns(const Stretch& stretch, int& last, std::vector<double>& turns)
 Partials partials(const BezierPatch& patch, const Point2& uv) {
     const double width_u = patch.to_u - patch.from_u, width_v = patch.to_v - patch.from_v;
     Row u, v, du, dv;
-    bernstein_basis(patch.degree_u, (uv.x() - patch.from_u) / width_u, u, du);
-    bernstein_basis(patch.degree_v, (uv.y() - patch.from_v) / width_v, v, dv);
+    const auto degree_u = static_cast<std::size_t>(patch.degree_u);
+    const auto degree_v = static_cast<std::size_t>(patch.degree_v);
+    bernstein_basis(degree_u, (uv.x() - patch.from_u) / width_u, u, du);
+    bernstein_basis(degree_v, (uv.y() - patch.from_v) / width_v, v, dv);
     using Eigen::Vector4d;
     Vector4d point = Vector4d::Zero(), by_u = Vector4d::Zero(), by_v = Vector4d::Zero();
-    const auto rows = static_cast<std::size_t>(patch.degree_u) + 1;
-    const auto columns = static_cast<std::size_t>(patch.degree_v) + 1;
-    for (std::size_t i = 0; i < rows; ++i) {
+    const std::size_t columns = degree_v + 1;
+    for (std::size_t i = 0; i <= degree_u; ++i) {
         Vector4d row = Vector4d::Zero(), row_by_v = Vector4d::Zero();
         for (std::size_t j = 0; j < columns; ++j) {
             const Vector4d& control = patch.control_points[i * columns + j];
@@ -121,13 +138,13 @@ IsoLine::IsoLine(const BezierPatch& patch, bool along_u, double fixed)
       width_(along_u ? patch.to_u - patch.from_u : patch.to_v - patch.from_v) {
     const double across_from = along_u ? patch.from_v : patch.from_u;
     const double across_to = along_u ? patch.to_v : patch.to_u;
-    Row basis, unused;
-    const int across = along_u ? patch.degree_v : patch.degree_u;
-    bernstein_basis(across, (fixed - across_from) / (across_to - across_from), basis, unused);
+    Row basis;
+    const auto across = static_cast<std::size_t>(along_u ? patch.degree_v : patch.degree_u);
+    bernstein_basis(across, (fixed - across_from) / (across_to - across_from), basis);
     const auto columns = static_cast<std::size_t>(patch.degree_v) + 1;
     for (std::size_t i = 0; i <= static_cast<std::size_t>(degree_); ++i) {
         z_[i] = w_[i] = 0;
-        for (std::size_t k = 0; k <= static_cast<std::size_t>(across); ++k) {
+        for (std::size_t k = 0; k <= across; ++k) {
             const auto& control = patch.control_points[along_u ? i * columns + k : k * columns + i];
             z_[i] += basis[k] * control.z();
             w_[i] += basis[k] * control.w();
@@ -135,26 +152,36 @@ IsoLine::IsoLine(const BezierPatch& patch, bool along_u, double fixed)
     }
 }
 
-std::pair<double, double> IsoLine::above(double level_mm, double parameter) const {
-    const double t = (parameter - from_) / width_;
+// Nested multiplication in t / (1 - t), or its inverse beyond the middle, where it does not overflow (Volk & Schumaker,
+// "An efficient algorithm for evaluating polynomials in Bernstein-Bezier form", Computing 46, 1991).
+std::pair<double, double> IsoLine::value_and_slope(const Coefficients& scaled, double t) const {
     const auto n = static_cast<std::size_t>(degree_);
-    Row c;
-    for (std::size_t i = 0; i <= n; ++i) c[i] = z_[i] - level_mm * w_[i];
-    for (std::size_t level = n; level > 1; --level) {
-        for (std::size_t i = 0; i < level; ++i) c[i] = (1 - t) * c[i] + t * c[i + 1];
+    const bool late = t > 0.5;
+    const double near = late ? t : 1 - t, s = (1 - near) / near;
+    double value = scaled[late ? 0 : n], slope = 0, power = 1;
+    for (std::size_t i = n; i-- > 0;) {
+        slope = slope * s + value;
+        value = value * s + scaled[late ? n - i : i];
+        power *= near;
     }
-    if (n == 0) return {c[0], 0};
-    const double slope = static_cast<double>(n) * (c[1] - c[0]) / width_;
-    return {(1 - t) * c[0] + t * c[1], slope};
+    // d/dt of near^n p(s), ds/dt = +-1 / near^2; near itself goes with or against t.
+    const double by_near = static_cast<double>(n) * value - slope / near;
+    return {power * value, (late ? 1 : -1) * power / near * by_near};
 }
 
-double IsoLine::crossing(double level_mm, double start, double end, bool above_at_start) const {
+double IsoLine::crossing(double level_mm, double start, double end, bool above_at_start,
+                         double guess) const {
     // A hundredth of what counts as a length: polishing further moves no point.
     constexpr double height_accuracy_mm = resolution_mm / 100;
-    const auto f = [&](double parameter) { return above(level_mm, parameter); };
-    const double low = f(start).first, high = f(end).first;
-    const double guess = low != high ? start + (end - start) * low / (low - high) : start;
-    return bracketed_root(f, start, end, above_at_start, guess, height_accuracy_mm * w_[0]);
+    Coefficients scaled;
+    const auto n = static_cast<std::size_t>(degree_);
+    for (std::size_t i = 0; i <= n; ++i) scaled[i] = binomials[n][i] * (z_[i] - level_mm * w_[i]);
+    const auto above = [&](double t) { return value_and_slope(scaled, t); };
+    const double low = (start - from_) / width_, high = (end - from_) / width_;
+    const double t = bracketed_root(above, low, high, above_at_start, (guess - from_) / width_,
+                                    height_accuracy_mm * w_[0]);
+    // Not a bit beyond the bounds.
+    return std::clamp(from_ + t * width_, start, end);
 }
 
 void IsoLine::append_turns(double start, double end, std::vector<double>& turns) const {

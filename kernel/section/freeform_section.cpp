@@ -30,14 +30,9 @@ std::size_t chord_at(const LevelCurve& curve, double key) {
 CurvePoint point_at(const LevelCurve& curve, double key) {
     if (curve.closed) key -= curve.length_mm() * std::floor(key / curve.length_mm());
     const std::size_t i = chord_at(curve, key);
-    const CurvePoint &from = curve.points[i - 1], &to = curve.points[i];
     const double chord = curve.key[i] - curve.key[i - 1];
     const double share = chord > 0 ? std::clamp((key - curve.key[i - 1]) / chord, 0.0, 1.0) : 0;
-    const Vector2 tangent = (1 - share) * from.tangent + share * to.tangent;
-    const double length = tangent.norm();
-    // Between neighbours tangents differ little; opposite ones would be a cusp, where either will do.
-    return {(1 - share) * from.point + share * to.point,
-            length > 0 ? Vector2(tangent / length) : from.tangent};
+    return between(curve.points[i - 1], curve.points[i], share);
 }
 
 // Appends the curve's points strictly between two keys, which may lie a turn ahead.
@@ -55,6 +50,20 @@ void append_between(const LevelCurve& curve, double from, double to,
         }
         if (turn == 0) break;
     }
+}
+
+// Appends a point, before it as many of the cubic that leads to it as keep chords near the curve.
+void append_dense(const CurvePoint& point, double allowed_mm, std::vector<CurvePoint>& points) {
+    // Arcs that hold to the points within their share of the tolerance cannot use more than this between them.
+    constexpr double share_of_allowed = 1.0 / 8;
+    const CurvePoint before = points.back();
+    const double sagitta = sagitta_mm(before, point);
+    const int count =
+        static_cast<int>(std::ceil(std::sqrt(sagitta / (share_of_allowed * allowed_mm))));
+    for (int i = 1; i < count; ++i) {
+        points.push_back(between(before, point, static_cast<double>(i) / count));
+    }
+    points.push_back(point);
 }
 
 }  // namespace
@@ -102,10 +111,10 @@ void trace(const FreeformSection& section, int component, double from, double to
     const auto kept_end = std::find_if_not(std::make_reverse_iterator(points.end()),
                                            std::make_reverse_iterator(begin), near(end, off_end))
                               .base();
-    std::vector<CurvePoint> kept{{start, first.tangent}};
-    kept.insert(kept.end(), begin, kept_end);
-    kept.push_back({end, last.tangent});
-    fit_arcs(kept, allowed_mm, out);
+    std::vector<CurvePoint> dense{{start, first.tangent}};
+    for (auto point = begin; point != kept_end; ++point) append_dense(*point, allowed_mm, dense);
+    append_dense({end, last.tangent}, allowed_mm, dense);
+    fit_arcs(dense, allowed_mm, out);
 }
 
 }  // namespace lyr

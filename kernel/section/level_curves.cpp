@@ -16,6 +16,9 @@
 namespace lyr {
 namespace {
 
+// Places are found on chords (freeform_section.cpp): these must not stray far from their curve.
+constexpr double farthest_from_chord_mm = 0.02;
+
 constexpr std::uint32_t none = ~std::uint32_t{0};
 
 // A crossing as an end of a cell's curve.
@@ -34,8 +37,8 @@ struct CellCurve {
 
 class Tracker {
 public:
-    Tracker(const HeightMesh& mesh, double z_mm, double chord_error_mm)
-        : mesh_(mesh), z_mm_(z_mm), chord_error_mm_(chord_error_mm) {}
+    Tracker(const HeightMesh& mesh, double z_mm, double allowed_mm)
+        : mesh_(mesh), z_mm_(z_mm), allowed_mm_(allowed_mm) {}
 
     std::vector<LevelCurve> curves() {
         find_ends();
@@ -58,7 +61,7 @@ private:
     CurvePoint point_at(const BezierPatch& patch, const Point2& uv) const;
 
     const HeightMesh& mesh_;
-    double z_mm_, chord_error_mm_;
+    double z_mm_, allowed_mm_;
     std::uint32_t crossing_count_ = 0;
     std::vector<CellEnd> ends_;
     std::vector<CellCurve> cell_curves_;
@@ -85,9 +88,11 @@ void Tracker::add_end(const BorderPiece& piece, std::int32_t cell, bool cell_is_
 void Tracker::find_ends() {
     mesh_.pieces_by_height.stab(z_mm_, [&](std::uint32_t item) {
         const BorderPiece& piece = mesh_.pieces[item];
-        const bool rises = mesh_.vertices[piece.from].z_mm <= z_mm_;
+        const double from = mesh_.vertices[piece.from].z_mm, to = mesh_.vertices[piece.to].z_mm;
+        const bool rises = from <= z_mm_;
+        const double guess = piece.start + (z_mm_ - from) / (to - from) * (piece.end - piece.start);
         const IsoLine line(mesh_.patches[piece.patch], piece.along_u, piece.fixed);
-        const double at = line.crossing(z_mm_, piece.start, piece.end, !rises);
+        const double at = line.crossing(z_mm_, piece.start, piece.end, !rises, guess);
         const std::uint32_t crossing = crossing_count_++;
         add_end(piece, piece.left, true, rises, at, crossing);
         add_end(piece, piece.right, false, rises, at, crossing);
@@ -179,38 +184,34 @@ Point2 Tracker::solve(const CellCurve& curve, double share) const {
         case CellKind::both:
             return solve_across(curve, share);
         case CellKind::graph_over_u:
-            return {chord.x(), IsoLine(patch, false, chord.x())
-                                   .crossing(z_mm_, cell.from_v, cell.to_v, !cell.rises_v)};
+            return {chord.x(),
+                    IsoLine(patch, false, chord.x())
+                        .crossing(z_mm_, cell.from_v, cell.to_v, !cell.rises_v, chord.y())};
         case CellKind::graph_over_v:
             return {IsoLine(patch, true, chord.y())
-                        .crossing(z_mm_, cell.from_u, cell.to_u, !cell.rises_u),
+                        .crossing(z_mm_, cell.from_u, cell.to_u, !cell.rises_u, chord.x()),
                     chord.y()};
     }
     return chord;
 }
 
-double angle_between(const Vector2& a, const Vector2& b) {
-    return std::abs(std::atan2(cross(a, b), a.dot(b)));
-}
-
-// Halves a span until chords are near enough. An arc that turns by a and b against its chord c at the ends lies up to
-// c (a + b) / 8 off it, and half as many chords again are kept: a quarter of that.
+// Halves a span until the cubic through its ends foretells the middle. The middle is kept, so that what is left of the
+// error is a sixteenth: it goes with the fourth power of the length.
 void Tracker::refine(const CellCurve& curve, double from, const CurvePoint& start, double to,
                      const CurvePoint& end, int depth, LevelCurve& out) const {
     constexpr int deepest = 40;
-    const Vector2 chord = end.point - start.point;
-    const double length = chord.norm();
+    const double length = (end.point - start.point).norm();
     if (length <= resolution_mm || depth > deepest) return;
-    const double expected =
-        length / 8 * (angle_between(start.tangent, chord) + angle_between(chord, end.tangent));
-    // So flat that even an error of this estimate by its own size would not matter.
-    if (expected <= chord_error_mm_ / 8 && depth > 0) return;
+    if (sagitta_mm(start, end) <= allowed_mm_) return;
     const double middle = 0.5 * (from + to);
     const BezierPatch& patch =
         mesh_.patches[mesh_.cells[static_cast<std::size_t>(curve.cell)].patch];
     const CurvePoint at = point_at(patch, solve(curve, middle));
-    const double off = std::abs(cross(chord, at.point - start.point)) / length;
-    const bool fine = std::max(expected, off) <= 4 * chord_error_mm_;
+    // Against the cubic as a curve: where along it the middle comes to lie is the parameter's affair.
+    const double share = std::clamp(
+        (at.point - start.point).dot(end.point - start.point) / (length * length), 0.0, 1.0);
+    const double off = (between(start, end, share).point - at.point).norm();
+    const bool fine = off <= allowed_mm_ && sagitta_mm(start, end) <= farthest_from_chord_mm;
     if (!fine) refine(curve, from, start, middle, at, depth + 1, out);
     out.points.push_back(at);
     if (!fine) refine(curve, middle, at, to, end, depth + 1, out);
@@ -239,9 +240,26 @@ void Tracker::sample(const CellCurve& curve, LevelCurve& out) const {
 
 }  // namespace
 
+CurvePoint between(const CurvePoint& start, const CurvePoint& end, double share) {
+    const double s = share, r = 1 - share, length = (end.point - start.point).norm();
+    const Point2 point = r * r * (1 + 2 * s) * start.point + s * s * (3 - 2 * s) * end.point +
+                         r * s * length * (r * start.tangent - s * end.tangent);
+    const Vector2 tangent =
+        6 * r * s * (end.point - start.point) +
+        length * (r * (1 - 3 * s) * start.tangent + s * (3 * s - 2) * end.tangent);
+    const double speed = tangent.norm();
+    return {point, speed > 0 ? Vector2(tangent / speed) : start.tangent};
+}
+
+double sagitta_mm(const CurvePoint& start, const CurvePoint& end) {
+    const Vector2 chord = end.point - start.point;
+    return chord.norm() / 8 *
+           (angle_between(start.tangent, chord) + angle_between(chord, end.tangent));
+}
+
 std::vector<LevelCurve> level_curves(const HeightMesh& mesh, double z_mm, bool forward,
-                                     double chord_error_mm) {
-    std::vector<LevelCurve> curves = Tracker(mesh, z_mm, chord_error_mm).curves();
+                                     double allowed_mm) {
+    std::vector<LevelCurve> curves = Tracker(mesh, z_mm, allowed_mm).curves();
     if (forward) return curves;
     for (LevelCurve& curve : curves) {
         std::reverse(curve.points.begin(), curve.points.end());
