@@ -127,7 +127,8 @@ bool is_left_of(const Vector3& pole, const Outline& outline, double sense) {
 constexpr double ray_offset_rad = 1e-12;
 
 double short_way(double difference, double period) {
-    return period > 0 ? std::remainder(difference, period) : difference;
+    const bool short_already = 2 * std::abs(difference) <= period;
+    return period > 0 && !short_already ? std::remainder(difference, period) : difference;
 }
 
 std::vector<Point2> parameters_along(const Surface& surface, const std::vector<Point3>& points) {
