@@ -167,26 +167,6 @@ BSplineCurve spline(const BSplineCurve& c, double from, double to) {
 
 }  // namespace
 
-BSplineCurve joined(BSplineCurve first, BSplineCurve second) {
-    const double shift = first.domain_end() - second.domain_start();
-    for (double& knot : second.knots) knot += shift;
-    first.knots.pop_back();
-    first.knots.insert(first.knots.end(), second.knots.begin() + second.degree + 1,
-                       second.knots.end());
-    if (!first.weights.empty() || !second.weights.empty()) {
-        first.weights.resize(first.control_points.size(), 1.0);
-        second.weights.resize(second.control_points.size(), 1.0);
-        const double share = first.weights.back() / second.weights.front();
-        for (std::size_t i = 1; i < second.weights.size(); ++i) {
-            first.weights.push_back(share * second.weights[i]);
-        }
-    }
-    first.control_points.insert(first.control_points.end(), second.control_points.begin() + 1,
-                                second.control_points.end());
-    first.closed = false;
-    return first;
-}
-
 BSplineCurve rational(const Curve& curve, double from, double to) {
     return std::visit([&](const auto& c) { return spline(c, from, to); }, curve);
 }

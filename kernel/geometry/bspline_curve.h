@@ -27,6 +27,12 @@ struct BezierPiece {
 
 std::vector<BezierPiece> bezier_pieces(const BSplineCurve& curve, double from, double to);
 
+// The same points, met in the other direction, over the same domain (to round-off).
+BSplineCurve reversed(BSplineCurve curve);
+
+// The same curve of a higher degree (or, if it is of that degree already, as it is).
+BSplineCurve elevated(const BSplineCurve& curve, int degree);
+
 // One after the other, both of one degree and clamped at their ends; the second one's knots are moved to follow.
 BSplineCurve joined(BSplineCurve first, BSplineCurve second);
 

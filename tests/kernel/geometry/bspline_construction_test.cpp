@@ -172,3 +172,24 @@ TEST_CASE("3: on a sheet with kinks a point beyond one is found from a guess bef
         CHECK((invert_near(s, p, guess) - uv).norm() <= 1e-6);
     }
 }
+
+TEST_CASE("reversed, raised and joined curves are the same points") {
+    Random random(27);
+    for (int i = 0; i < 500; ++i) {
+        const BSplineCurve c = test::random_spline(random);
+        const double start = c.domain_start(), end = c.domain_end();
+        const BSplineCurve back = reversed(c);
+        const BSplineCurve raised = elevated(c, c.degree + random.integer(0, 3));
+        CHECK(back.domain_start() == doctest::Approx(start).epsilon(1e-12));
+        CHECK(raised.domain_end() == end);
+        const double middle = random.between(start, end);
+        const BSplineCurve both = joined(rational(c, start, middle), rational(c, middle, end));
+        for (int k = 0; k < 5; ++k) {
+            const double t = random.between(start, end);
+            const Point3 p = evaluate(c, t);
+            CHECK((evaluate(back, start + end - t) - p).norm() <= 1e-9);
+            CHECK((evaluate(raised, t) - p).norm() <= 1e-9);
+            CHECK((evaluate(both, t) - p).norm() <= 1e-9);
+        }
+    }
+}
