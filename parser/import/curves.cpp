@@ -4,7 +4,9 @@
 
 #include <cmath>
 
+#include "parser/import/bounded_curve.h"
 #include "parser/import/bspline.h"
+#include "parser/import/offset.h"
 #include "parser/import/placement.h"
 
 namespace lyr::importer {
@@ -108,6 +110,18 @@ Result<DirectedCurve> read_on_surface(const File& file, InstanceIndex instance,
     return read_curve(file, instance, in_space, units, trail);
 }
 
+Result<DirectedCurve> read_replica(const File& file, InstanceIndex instance, const Units& units,
+                                   part21::Trail& trail) {
+    Fields fields(file, instance, 3);
+    const InstanceIndex parent = fields.reference(1), transformation = fields.reference(2);
+    if (!fields.ok()) return fields.error();
+    const Result<Eigen::Affine3d> to = read_transform(file, instance, transformation, units);
+    if (!to) return to.error();
+    Result<DirectedCurve> curve = read_curve(file, instance, parent, units, trail);
+    if (curve) curve->curve = transformed(curve->curve, *to);
+    return curve;
+}
+
 }  // namespace
 
 Result<DirectedCurve> read_curve(const File& file, InstanceIndex user, InstanceIndex curve,
@@ -122,6 +136,9 @@ Result<DirectedCurve> read_curve(const File& file, InstanceIndex user, InstanceI
     }
     if (type == "TRIMMED_CURVE") return read_trimmed(file, curve, units, trail);
     if (type == "POLYLINE") return directed(read_polyline(file, curve, units));
+    if (is_composite(type)) return directed(read_composite(file, curve, units, trail));
+    if (type == "OFFSET_CURVE_3D") return read_offset_curve(file, curve, units, trail);
+    if (type == "CURVE_REPLICA") return read_replica(file, curve, units, trail);
     const bool is_curve =
         type.empty() || type.find("CURVE") != std::string_view::npos || type == "CLOTHOID";
     if (!is_curve) return unexpected(file, user, "a curve", curve);

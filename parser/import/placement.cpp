@@ -133,6 +133,27 @@ Result<Frame> read_frame(const File& file, InstanceIndex user, InstanceIndex pla
     return frame;
 }
 
+Result<Frame> read_axis(const File& file, InstanceIndex user, InstanceIndex placement,
+                        const Units& units) {
+    if (keyword(file, placement) != "AXIS1_PLACEMENT") {
+        return unexpected(file, user, "AXIS1_PLACEMENT", placement);
+    }
+    Fields fields(file, placement, 3);
+    const InstanceIndex location = fields.reference(1);
+    const InstanceIndex axis = fields.optional_reference(2);
+    if (!fields.ok()) return fields.error();
+    const Result<Point3> origin = read_point(file, placement, location, units);
+    if (!origin) return origin.error();
+    const Result<Vector3> z_stated = optional_direction(file, placement, axis);
+    if (!z_stated) return z_stated.error();
+    Frame frame;
+    frame.origin = *origin;
+    if (!z_stated->isZero()) frame.z = *z_stated;
+    frame.x = first_projected(frame.z, nullptr);
+    frame.y = frame.z.cross(frame.x);
+    return frame;
+}
+
 Eigen::Affine3d to_affine(const Frame& frame) {
     Eigen::Affine3d transform;
     transform.linear() << frame.x, frame.y, frame.z;

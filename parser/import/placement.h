@@ -21,6 +21,10 @@ Result<Vector3> read_direction(const File& file, InstanceIndex user, InstanceInd
 Result<Frame> read_frame(const File& file, InstanceIndex user, InstanceIndex placement,
                          const Units& units);
 
+// AXIS1_PLACEMENT: a frame with the axis as its z.
+Result<Frame> read_axis(const File& file, InstanceIndex user, InstanceIndex placement,
+                        const Units& units);
+
 // From the frame's own coordinates to those that it is stated in.
 Eigen::Affine3d to_affine(const Frame& frame);
 

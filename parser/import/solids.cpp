@@ -94,33 +94,66 @@ private:
     static constexpr double certain_area_mm2 = resolution_mm * 1e4;
 
     Status add_face(const ShellRecord& record, const FaceRecord& face, ShellId shell) {
-        Result<Surface> surface = read_surface(file_, face.face, face.surface, units_);
-        if (!surface) return surface.error();
         const std::uint32_t first_loop = index(model_.loops);
-        NappeSides sides;
         for (std::uint32_t i = 0; i < face.loop_count; ++i) {
-            const LoopRecord& loop = record.loops[face.first_loop + i];
-            if (const Status status = add_loop(record, loop, *surface, sides); !status)
-                return status;
+            const Status status = add_loop(record, record.loops[face.first_loop + i]);
+            if (!status) return status;
         }
-        const bool closed =
-            std::holds_alternative<Sphere>(*surface) || std::holds_alternative<Torus>(*surface);
-        if (face.loop_count == 0 && !closed) {
+        Result<StatedSurface> stated = read_surface(
+            file_, face.face, face.surface, units_, [&] { return boundary_points(first_loop); },
+            trail_);
+        if (!stated) return stated.error();
+        Surface& surface = stated->surface;
+        if (face.loop_count == 0 && !closes(surface)) {
             return file_.error(face.face, named(file_, face.face) +
                                               ": a face without bounds on an unbounded " +
                                               named(file_, face.surface));
         }
+        const NappeSides sides = nappe_sides(surface, first_loop);
         if (sides.both()) {
             return unsupported(file_, face.face, "a face on both sides of a cone's apex");
         }
-        if (sides.turned()) *surface = other_nappe(std::get<Cone>(*surface));
+        if (sides.turned()) surface = other_nappe(std::get<Cone>(surface));
         // Files give the normal of a torus as d/du x d/dv, which turns where the tube has crossed the axis.
-        const bool inner_sheet = is_beyond_axis(*surface, first_loop);
-        if (inner_sheet) std::get<Torus>(*surface).inner_sheet = true;
-        const bool same_sense = face.same_sense != inner_sheet;
-        model_.faces.push_back({std::move(*surface), same_sense, first_loop, face.loop_count, shell,
+        const bool is_inner = !stated->sheet_is_stated && is_beyond_axis(surface, first_loop);
+        if (is_inner) std::get<Torus>(surface).inner_sheet = true;
+        const bool same_sense = (face.same_sense == stated->same_sense) != is_inner;
+        model_.faces.push_back({std::move(surface), same_sense, first_loop, face.loop_count, shell,
                                 file_.id(face.face)});
         return Done{};
+    }
+
+    static bool closes(const Surface& surface) {
+        if (const auto* spline = std::get_if<SharedBSplineSurface>(&surface))
+            return (*spline)->closed_u && (*spline)->closed_v;
+        return std::holds_alternative<Sphere>(surface) || std::holds_alternative<Torus>(surface);
+    }
+
+    // Calls visit(edge) for the edges of the loops from `first_loop` on.
+    template <class Visit>
+    void for_each_edge(std::uint32_t first_loop, Visit visit) const {
+        for (std::uint32_t l = first_loop; l < index(model_.loops); ++l) {
+            const Loop& loop = model_.loops[l];
+            for (std::uint32_t c = 0; c < loop.coedge_count; ++c)
+                visit(model_[model_.coedges[loop.first_coedge + c].edge]);
+        }
+    }
+
+    std::vector<Point3> boundary_points(std::uint32_t first_loop) const {
+        std::vector<Point3> points;
+        for_each_edge(first_loop, [&](const Edge& edge) {
+            if (const auto* spline = std::get_if<BSplineCurve>(&edge.curve)) {
+                points.insert(points.end(), spline->control_points.begin(),
+                              spline->control_points.end());
+                return;
+            }
+            const int steps = std::holds_alternative<Line>(edge.curve) ? 1 : 16;
+            for (int i = 0; i <= steps; ++i) {
+                const double t = edge.t_start + (edge.t_end - edge.t_start) * i / steps;
+                points.push_back(evaluate(edge.curve, t));
+            }
+        });
+        return points;
     }
 
     bool is_beyond_axis(const Surface& surface, std::uint32_t first_loop) const {
@@ -138,11 +171,9 @@ private:
     struct NappeSides {
         double positive_mm = 0, negative_mm = 0;
 
-        void add(const Surface& surface, const Point3& point) {
-            const auto* cone = std::get_if<Cone>(&surface);
-            if (cone == nullptr) return;
-            const double height = cone->frame.to_local(point).z();
-            const double radius_mm = cone->radius_mm + height * std::tan(cone->half_angle_rad);
+        void add(const Cone& cone, const Point3& point) {
+            const double height = cone.frame.to_local(point).z();
+            const double radius_mm = cone.radius_mm + height * std::tan(cone.half_angle_rad);
             positive_mm = std::max(positive_mm, radius_mm);
             negative_mm = std::max(negative_mm, -radius_mm);
         }
@@ -153,8 +184,18 @@ private:
         double largest() const { return std::max(positive_mm, negative_mm); }
     };
 
-    Status add_loop(const ShellRecord& record, const LoopRecord& loop, const Surface& surface,
-                    NappeSides& sides) {
+    NappeSides nappe_sides(const Surface& surface, std::uint32_t first_loop) const {
+        NappeSides sides;
+        const auto* cone = std::get_if<Cone>(&surface);
+        if (cone == nullptr) return sides;
+        for_each_edge(first_loop, [&](const Edge& edge) {
+            sides.add(*cone, model_[edge.start].point);
+            sides.add(*cone, model_[edge.end].point);
+        });
+        return sides;
+    }
+
+    Status add_loop(const ShellRecord& record, const LoopRecord& loop) {
         const std::uint32_t first = index(model_.coedges);
         if (loop.vertex.valid()) {
             const Result<VertexId> vertex = vertex_of(loop.loop, loop.vertex);
@@ -165,8 +206,6 @@ private:
             const Result<EdgeId> edge = edge_of(use.edge);
             if (!edge) return edge.error();
             model_.coedges.push_back({*edge, use.reversed});
-            sides.add(surface, model_[model_[*edge].start].point);
-            sides.add(surface, model_[model_[*edge].end].point);
         }
         model_.loops.push_back({first, loop.use_count, file_.id(loop.loop)});
         return Done{};

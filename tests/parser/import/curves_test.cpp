@@ -185,3 +185,118 @@ TEST_CASE("3: B-splines whose numbers disagree are errors that say how") {
     CHECK(mentions(error_of("3", "(-4,12),(0.,1.)"), "multiplicities"));
     CHECK(mentions(error_of("3", "(4,1000000000000),(0.,1.)"), "multiplicities"));
 }
+
+namespace {
+
+// Segments of a composite curve: each a curve and whether it is met along it.
+std::string segments(StepText& step, const std::vector<std::pair<int, bool>>& pieces) {
+    std::vector<int> ids;
+    for (const auto& [curve, same_sense] : pieces) {
+        ids.push_back(step.add("COMPOSITE_CURVE_SEGMENT(.CONTINUOUS.," +
+                               StepText::flag(same_sense) + "," + StepText::ref(curve) + ")"));
+    }
+    return StepText::refs(ids);
+}
+
+int trim(StepText& step, int basis, const std::string& from, const std::string& to, bool agrees,
+         const std::string& master) {
+    return step.add("TRIMMED_CURVE(''," + StepText::ref(basis) + "," + from + "," + to + "," +
+                    StepText::flag(agrees) + "," + master + ")");
+}
+
+}  // namespace
+
+TEST_CASE("1: a composite curve is its segments, one after the other") {
+    // A quarter of a circle, trimmed by parameters, against its sense; a line trimmed by points; a polyline.
+    const auto composite = [](double gap) {
+        return [gap](StepText& step) {
+            const int arc = trim(step, circle(step), "(PARAMETER_VALUE(0.))",
+                                 "(PARAMETER_VALUE(1.5707963267948966))", true, ".PARAMETER.");
+            const std::string a = "(" + StepText::ref(step.point({2, 0, 0})) + ")";
+            const std::string b = "(" + StepText::ref(step.point({2, -3, 0})) + ")";
+            const int line =
+                trim(step, step.line({2, 7, 0}, {2, 8, 0}), a, b, false, ".CARTESIAN.");
+            const int polyline = step.add(
+                "POLYLINE(''," + points(step, {{2 + gap, -3, 0}, {5, -3, 0}, {5, 0, 0}}) + ")");
+            return step.add("COMPOSITE_CURVE(''," +
+                            segments(step, {{arc, false}, {line, true}, {polyline, true}}) +
+                            ",.F.)");
+        };
+    };
+    const Edge edge = edge_on(composite(0), {0, 2, 0}, {5, 0, 0}, true);
+    const auto& spline = std::get<BSplineCurve>(edge.curve);
+    CHECK(spline.degree == 2);
+    const double r = std::sqrt(2.0);
+    for (const Point3& p : {Point3(r, r, 0), Point3(2, -1, 0), Point3(4, -3, 0), Point3(5, -1, 0)})
+        CHECK(near(evaluate(edge.curve, invert(edge.curve, p)), p));
+    CHECK(!near(evaluate(edge.curve, invert(edge.curve, {-r, -r, 0})), {-r, -r, 0}));
+
+    StepText gap;
+    const int a = gap.vertex({0, 2, 0}), b = gap.vertex({5, 0, 0});
+    const int along = gap.edge(a, b, composite(0.01)(gap));
+    const int at = gap.placement({0, 0, 0}, Vector3::UnitZ(), Vector3::UnitX());
+    const int face = gap.face({gap.bound(gap.loop({gap.oriented(along, true)}))},
+                              gap.add("PLANE(''," + StepText::ref(at) + ")"));
+    const int shell = gap.add("CLOSED_SHELL(''," + StepText::refs({face}) + ")");
+    gap.representation({gap.add("MANIFOLD_SOLID_BREP(''," + StepText::ref(shell) + ")")},
+                       gap.millimetres());
+    CHECK(mentions(refused(gap), "does not begin where the segment before it ends"));
+}
+
+TEST_CASE("1: trims in degrees, and a line's in lengths of its vector") {
+    StepText step;
+    const int degrees = step.context({step.si_length(".MILLI."), step.degree()});
+    const int arc = trim(step, circle(step), "(PARAMETER_VALUE(0.))", "(PARAMETER_VALUE(90.))",
+                         true, ".PARAMETER.");
+    const int direction = step.direction(Vector3::UnitY());
+    const int vector = step.add("VECTOR(''," + StepText::ref(direction) + ",5.)");
+    const int ray = step.add("LINE(''," + StepText::ref(step.point({2, 0, 0})) + "," +
+                             StepText::ref(vector) + ")");
+    const int line =
+        trim(step, ray, "(PARAMETER_VALUE(-2.))", "(PARAMETER_VALUE(0.))", true, ".PARAMETER.");
+    const int both =
+        step.add("COMPOSITE_CURVE(''," + segments(step, {{line, true}, {arc, true}}) + ",.F.)");
+    const int edge = step.edge(step.vertex({2, -10, 0}), step.vertex({0, 2, 0}), both);
+    const int at = step.placement({0, 0, 0}, Vector3::UnitZ(), Vector3::UnitX());
+    const int face = step.face({step.bound(step.loop({step.oriented(edge, true)}))},
+                               step.add("PLANE(''," + StepText::ref(at) + ")"));
+    const int shell = step.add("CLOSED_SHELL(''," + StepText::refs({face}) + ")");
+    step.representation({step.add("MANIFOLD_SOLID_BREP(''," + StepText::ref(shell) + ")")},
+                        degrees);
+    const Imported result = imported(step);
+    CHECK(result.diagnostics.empty());
+    const Edge& found = result.model.edges.at(0);
+    CHECK(near(evaluate(found.curve, found.t_start), {2, -10, 0}));
+    CHECK(near(evaluate(found.curve, found.t_end), {0, 2, 0}));
+}
+
+TEST_CASE("1: offset and moved curves") {
+    const auto offset = [](const std::function<int(StepText&)>& basis, double distance,
+                           const Vector3& reference) {
+        return [=](StepText& step) {
+            const int curve = basis(step), direction = step.direction(reference);
+            return step.add("OFFSET_CURVE_3D(''," + StepText::ref(curve) + "," +
+                            StepText::num(distance) + ",.F.," + StepText::ref(direction) + ")");
+        };
+    };
+    const auto line = [](StepText& step) { return step.line({0, 0, 0}, {4, 0, 0}); };
+    // z x x is y.
+    const Edge moved = edge_on(offset(line, 3, Vector3::UnitZ()), {0, 3, 0}, {4, 3, 0}, true);
+    CHECK(std::holds_alternative<Line>(moved.curve));
+    const Edge inner =
+        edge_on(offset(circle, 0.5, Vector3::UnitZ()), {1.5, 0, 0}, {0, 1.5, 0}, true);
+    CHECK(std::get<Circle>(inner.curve).radius_mm == 1.5);
+    const Edge outer =
+        edge_on(offset(circle, 0.5, -Vector3::UnitZ()), {2.5, 0, 0}, {0, 2.5, 0}, true);
+    CHECK(std::get<Circle>(outer.curve).radius_mm == 2.5);
+    const Edge replica = edge_on(
+        [](StepText& step) {
+            const int parent = circle(step), at = step.point({7, 0, 0});
+            const int to = step.add("CARTESIAN_TRANSFORMATION_OPERATOR_3D('',$,$," +
+                                    StepText::ref(at) + ",2.,$)");
+            return step.add("CURVE_REPLICA(''," + StepText::ref(parent) + "," + StepText::ref(to) +
+                            ")");
+        },
+        {11, 0, 0}, {7, 4, 0}, true);
+    CHECK(std::get<Circle>(replica.curve).radius_mm == doctest::Approx(4));
+}

@@ -1,0 +1,115 @@
+// Offsets change sizes only; one that goes through an axis or centre comes out as a surface that looks the other way.
+
+#include "parser/import/offset.h"
+
+#include <cmath>
+#include <optional>
+
+#include "kernel/geometry/tolerance.h"
+#include "parser/import/placement.h"
+
+namespace lyr::importer {
+
+namespace {
+
+// By a distance along normal(); nothing where nothing is left, or where the kind of surface has no elementary offset.
+struct Offset {
+    StatedSurface stated;
+    double distance_mm;
+
+    std::optional<StatedSurface> operator()(Plane s) const {
+        s.frame.origin += distance_mm * s.frame.z;
+        return with(s);
+    }
+    std::optional<StatedSurface> operator()(const Cylinder& s) const {
+        return resized(s, &Cylinder::radius_mm);
+    }
+    std::optional<StatedSurface> operator()(const Sphere& s) const {
+        return resized(s, &Sphere::radius_mm);
+    }
+    std::optional<StatedSurface> operator()(const Torus& s) const {
+        return resized(s, &Torus::minor_mm);
+    }
+    // Moved along the axis; which of its nappes is meant, the face's loops decide.
+    std::optional<StatedSurface> operator()(Cone s) const {
+        s.radius_mm += distance_mm / std::cos(s.half_angle_rad);
+        const std::optional<Surface> cone = upright_cone(s);
+        return cone ? std::optional(with(*cone)) : std::nullopt;
+    }
+    std::optional<StatedSurface> operator()(const SharedBSplineSurface&) const {
+        return std::nullopt;
+    }
+
+    StatedSurface with(const Surface& surface) const {
+        return {surface, stated.same_sense, stated.sheet_is_stated};
+    }
+    // What has gone beyond its axis or centre looks the other way.
+    template <class T>
+    std::optional<StatedSurface> resized(T s, double T::*radius_mm) const {
+        s.*radius_mm += distance_mm;
+        if (std::abs(s.*radius_mm) <= resolution_mm) return std::nullopt;
+        const bool beyond = s.*radius_mm < 0;
+        s.*radius_mm = std::abs(s.*radius_mm);
+        return StatedSurface{s, stated.same_sense != beyond, stated.sheet_is_stated};
+    }
+};
+
+}  // namespace
+
+Result<StatedSurface> read_offset(const File& file, InstanceIndex instance, const Units& units,
+                                  const Boundary& boundary, part21::Trail& trail) {
+    // name, basis_surface, distance, self_intersect
+    Fields fields(file, instance, 4);
+    const InstanceIndex basis = fields.reference(1);
+    const double distance_mm = fields.real(2) * units.length_mm;
+    if (!fields.ok()) return fields.error();
+    if (!std::isfinite(distance_mm))
+        return file.error(instance, named(file, instance) + ": a finite distance expected");
+    const Result<StatedSurface> surface =
+        read_surface(file, instance, basis, units, boundary, trail);
+    if (!surface) return surface;
+    if (std::holds_alternative<SharedBSplineSurface>(surface->surface)) {
+        return unsupported(file, instance, "the offset of a free-form " + named(file, basis));
+    }
+    const double along_normal_mm = surface->same_sense ? distance_mm : -distance_mm;
+    const auto result = std::visit(Offset{*surface, along_normal_mm}, surface->surface);
+    if (!result) {
+        return file.error(instance,
+                          named(file, instance) + ": nothing is left of " + named(file, basis));
+    }
+    return *result;
+}
+
+Result<DirectedCurve> read_offset_curve(const File& file, InstanceIndex instance,
+                                        const Units& units, part21::Trail& trail) {
+    // name, basis_curve, distance, self_intersect, ref_direction: by the distance along ref_direction x tangent
+    Fields fields(file, instance, 5);
+    const InstanceIndex basis = fields.reference(1), reference = fields.reference(4);
+    const double distance_mm = fields.real(2) * units.length_mm;
+    if (!fields.ok()) return fields.error();
+    const Result<Vector3> direction = read_direction(file, instance, reference);
+    if (!direction) return direction.error();
+    Result<DirectedCurve> result = read_curve(file, instance, basis, units, trail);
+    if (!result) return result;
+    const double along_mm = result->same_sense ? distance_mm : -distance_mm;
+    if (auto* line = std::get_if<Line>(&result->curve)) {
+        const Vector3 across = direction->cross(line->direction);
+        if (across.norm() > angular_resolution_rad) {
+            line->origin += along_mm * across.normalized();
+            return result;
+        }
+    }
+    if (auto* circle = std::get_if<Circle>(&result->curve)) {
+        // The axis x tangent points to the centre.
+        const bool inward = direction->dot(circle->frame.z) > 0;
+        const double radius_mm = circle->radius_mm + (inward ? -along_mm : along_mm);
+        const bool is_square = direction->cross(circle->frame.z).norm() <= angular_resolution_rad;
+        if (is_square && radius_mm > resolution_mm) {
+            circle->radius_mm = radius_mm;
+            return result;
+        }
+    }
+    return unsupported(file, instance, "an offset of " + named(file, basis));
+}
+
+}  // namespace lyr::importer

@@ -1,0 +1,23 @@
+// SURFACE_OF_LINEAR_EXTRUSION and SURFACE_OF_REVOLUTION.
+//
+// Contract
+//  1. What is an elementary surface becomes one: a line swept along or about anything but a skew axis, a circle moved
+//     along its axis, a circle turned about an axis in its plane.
+//  2. Everything else becomes a B-spline, exactly. It reaches along the sweep, and along curves without end, beyond
+//     the boundary by a sixteenth of what the boundary spans; B-splines and closed curves are swept whole.
+//  3. A curve in a plane with the axis that it crosses sweeps out points from both sides: only the part to one side,
+//     where the boundary is, is turned.
+
+#pragma once
+
+#include "parser/import/surfaces.h"
+
+namespace lyr::importer {
+
+Result<StatedSurface> read_extrusion(const File& file, InstanceIndex instance, const Units& units,
+                                     const Boundary& boundary, part21::Trail& trail);
+
+Result<StatedSurface> read_revolution(const File& file, InstanceIndex instance, const Units& units,
+                                      const Boundary& boundary, part21::Trail& trail);
+
+}  // namespace lyr::importer
