@@ -332,14 +332,15 @@ private:
         Fields fields(file_, r.transformation, 4);
         InstanceIndex of_first = fields.reference(2), of_second = fields.reference(3);
         if (!fields.ok()) return fields.error();
-        // Some writers exchange the two; each is an item of the representation that it belongs to.
+        // Some writers exchange the two; each is an item of the representation that it belongs to. Others, which name the
+        // assembly first, have the items in the right order but list them with the wrong representation.
         const auto lists = [&](RepresentationId id, InstanceIndex item) {
             const auto& placements = table_[id].placements;
             return std::find(placements.begin(), placements.end(), item) != placements.end();
         };
         const bool exchanged = lists(r.second, of_first) && !lists(r.first, of_first) &&
                                lists(r.first, of_second) && !lists(r.second, of_second);
-        if (exchanged) std::swap(of_first, of_second);
+        if (exchanged && link.child_is_first) std::swap(of_first, of_second);
         return between(link, link.child_is_first ? of_first : of_second, r.transformation,
                        link.child_is_first ? of_second : of_first, r.transformation);
     }
