@@ -53,6 +53,7 @@ private:
     LevelCurve follow_from(std::uint32_t first_curve);
     void add_end(const BorderPiece& piece, std::int32_t cell, bool cell_is_left, bool rises,
                  double at, std::uint32_t crossing);
+    int first_spans(const CellCurve& curve, const CurvePoint& start, double chord_mm) const;
     void sample(const CellCurve& curve, LevelCurve& out) const;
     void refine(const CellCurve& curve, double from, const CurvePoint& start, double to,
                 const CurvePoint& end, int depth, LevelCurve& out) const;
@@ -217,24 +218,42 @@ void Tracker::refine(const CellCurve& curve, double from, const CurvePoint& star
     if (!fine) refine(curve, middle, at, to, end, depth + 1, out);
 }
 
+// Into how many spans a cell's curve is divided to begin with: one that comes back to where it began (a cell may go once
+// around a closed surface) has no chord to measure against.
+int Tracker::first_spans(const CellCurve& curve, const CurvePoint& start, double chord_mm) const {
+    const MonotoneCell& cell = mesh_.cells[static_cast<std::size_t>(curve.cell)];
+    if (cell.kind == CellKind::flat) return 0;
+    if (chord_mm > farthest_from_chord_mm) return 1;
+    const CurvePoint middle = point_at(mesh_.patches[cell.patch], solve(curve, 0.5));
+    return (middle.point - start.point).norm() > std::max(chord_mm, resolution_mm) ? 4 : 1;
+}
+
 void Tracker::sample(const CellCurve& curve, LevelCurve& out) const {
     const MonotoneCell& cell = mesh_.cells[static_cast<std::size_t>(curve.cell)];
     const BezierPatch& patch = mesh_.patches[cell.patch];
     CurvePoint start = point_at(patch, curve.start.uv), end = point_at(patch, curve.end.uv);
     const Vector2 chord = end.point - start.point;
     const double length = chord.norm();
+    const int spans = first_spans(curve, start, length);
     // At a level point of the surface, and in a flat cell, the tangent says nothing.
     const Vector2 direction = length > 0 ? Vector2(chord / length) : start.tangent;
     if (cell.kind == CellKind::flat || start.tangent.isZero()) start.tangent = direction;
     if (cell.kind == CellKind::flat || end.tangent.isZero()) end.tangent = direction;
     if (out.points.empty()) {
         out.points.push_back(start);
-    } else if (length <= resolution_mm) {
+    } else if (length <= resolution_mm && spans < 2) {
         return;
     } else if (angle_between(out.points.back().tangent, start.tangent) > corner_rad) {
         out.points.push_back({out.points.back().point, start.tangent});
     }
-    if (cell.kind != CellKind::flat) refine(curve, 0, start, 1, end, 0, out);
+    CurvePoint from = start;
+    for (int i = 1; i <= spans; ++i) {
+        const double share = static_cast<double>(i) / spans;
+        const CurvePoint to = i == spans ? end : point_at(patch, solve(curve, share));
+        refine(curve, share - 1.0 / spans, from, share, to, 0, out);
+        if (i < spans) out.points.push_back(to);
+        from = to;
+    }
     out.points.push_back(end);
 }
 

@@ -107,6 +107,17 @@ BSplineSurface spun(const Curve& profile, double from, double to) {
     return revolved(rational(profile, from, to), Frame{});
 }
 
+// A tube whose cross-section is one Bezier piece that comes back to its start.
+BSplineSurface one_piece_tube(double height) {
+    BSplineCurve ring{6, std::vector<double>(7, 0.0), {}, {}, true};
+    ring.knots.resize(14, 1.0);
+    for (const Point2& p : {Point2(6, 0), Point2(6, 9), Point2(-12, 12), Point2(-18, 0),
+                            Point2(-12, -12), Point2(6, -9), Point2(6, 0)}) {
+        ring.control_points.push_back({p.x(), p.y(), 0});
+    }
+    return extruded(ring, {0, 0, height});
+}
+
 // In the x-z plane, from the lowest point to the highest: outward is d/du x d/dv.
 Frame upright(const Point3& centre) {
     return {centre, Vector3::UnitX(), Vector3::UnitZ(), -Vector3::UnitY()};
@@ -152,5 +163,20 @@ TEST_CASE("free-form: balls and rings that are one closed face, in every positio
             }
             CHECK(std::abs(sum - solid.volume_mm3) < 2e-4 * solid.volume_mm3 + allowed);
         }
+    }
+}
+
+TEST_CASE("free-form: a ring that lies in one cell of its surface is found (C_Radial_D6.3mm)") {
+    BSplineSurface tube = one_piece_tube(10);
+    tube.closed_u = true;
+    for (const double lean : {0.0, 0.01, 0.1}) {
+        CAPTURE(lean);
+        const Eigen::Affine3d turn(Eigen::AngleAxisd(lean, Vector3::UnitX()));
+        const HeightMesh mesh =
+            height_mesh(std::make_shared<const BSplineSurface>(transformed(tube, turn)));
+        const std::vector<LevelCurve> curves = level_curves(mesh, 5, true, 1e-4);
+        REQUIRE(curves.size() == 1);
+        CHECK(curves[0].closed);
+        CHECK(curves[0].length_mm() > 40);
     }
 }
