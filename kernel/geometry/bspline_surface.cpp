@@ -229,18 +229,19 @@ Window smooth_window(const BSplineSurface& surface, const Point2& uv) {
     Window window;
     for (const int i : {0, 1}) {
         const Axis axis = i == 0 ? axis_u(surface) : axis_v(surface);
-        const auto first = axis.knots.begin() + axis.degree;
-        const auto last = axis.knots.begin() + static_cast<std::ptrdiff_t>(axis.count);
-        const auto is_kink = [&](auto knot) {
-            return std::upper_bound(knot, last, *knot) - knot >= axis.degree;
+        const auto degree = static_cast<std::size_t>(axis.degree);
+        // The last of `degree` equal knots, or the first of them.
+        const auto ends_kink = [&](std::size_t k) {
+            return axis.knots[k + 1 - degree] == axis.knots[k];
         };
-        const auto span =
-            axis.knots.begin() + static_cast<std::ptrdiff_t>(span_of(axis, uv[i], axis.end()));
-        auto low = std::lower_bound(first, last, *span), high = std::upper_bound(span, last, *span);
-        while (low != first && !is_kink(low)) low = std::lower_bound(first, last, *(low - 1));
-        while (high != last && !is_kink(high)) high = std::upper_bound(high, last, *high);
-        window.low[i] = *low;
-        window.high[i] = *high;
+        const auto begins_kink = [&](std::size_t k) {
+            return axis.knots[k + degree - 1] == axis.knots[k];
+        };
+        std::size_t low = span_of(axis, uv[i], axis.end()), high = low + 1;
+        while (low > degree && !ends_kink(low)) --low;
+        while (high < axis.count && !begins_kink(high)) ++high;
+        window.low[i] = axis.knots[low];
+        window.high[i] = axis.knots[high];
     }
     return window;
 }
