@@ -54,7 +54,8 @@ using Diagnostics = std::vector<Diagnostic>;
 
 std::string to_string(const Diagnostic& diagnostic);
 
-// A value or the reason why there is none.
+// A value or the reason why there is none. What a temporary holds is moved out of it, so that `auto&& x = *f();` and
+// `for (auto& x : *f())` do not refer to what is gone.
 template <class T>
 class [[nodiscard]] Result {
 public:
@@ -63,13 +64,16 @@ public:
 
     bool ok() const { return state_.index() == 0; }
     explicit operator bool() const { return ok(); }
-    T& value() { return std::get<0>(state_); }
-    const T& value() const { return std::get<0>(state_); }
-    T& operator*() { return value(); }
-    const T& operator*() const { return value(); }
+    T& value() & { return std::get<0>(state_); }
+    const T& value() const& { return std::get<0>(state_); }
+    T value() && { return std::get<0>(std::move(state_)); }
+    T& operator*() & { return value(); }
+    const T& operator*() const& { return value(); }
+    T operator*() && { return std::move(*this).value(); }
     T* operator->() { return &value(); }
     const T* operator->() const { return &value(); }
-    const Diagnostic& error() const { return std::get<1>(state_); }
+    const Diagnostic& error() const& { return std::get<1>(state_); }
+    Diagnostic error() && { return std::get<1>(std::move(state_)); }
 
 private:
     std::variant<T, Diagnostic> state_;

@@ -30,6 +30,21 @@ TEST_CASE("diagnostic 1: a result is a value or an error") {
     CHECK(error.error().status == ExitStatus::output);
 }
 
+TEST_CASE("diagnostic: what a temporary result holds outlives it") {
+    const auto letters = [](bool good) -> Result<std::vector<std::string>> {
+        if (!good)
+            return Diagnostic{Severity::error, ExitStatus::input, std::string(100, 'e'), {}};
+        return std::vector<std::string>{std::string(100, 'a'), std::string(100, 'b')};
+    };
+    std::string all;
+    for (const std::string& letter : *letters(true)) all += letter;
+    CHECK(all == std::string(100, 'a') + std::string(100, 'b'));
+    const auto& held = letters(true).value();
+    CHECK(held.size() == 2);
+    const Diagnostic& error = letters(false).error();
+    CHECK(error.message == std::string(100, 'e'));
+}
+
 TEST_CASE("typed index: none by default, ordered by value") {
     using Id = TypedIndex<struct Tag>;
     CHECK(!Id{}.valid());
