@@ -4,6 +4,8 @@
 
 #include <cstdio>
 
+#include "base/text.h"
+
 namespace lyr {
 namespace {
 
@@ -32,7 +34,7 @@ std::string to_string(const Diagnostic& diagnostic) {
     const Location& where = diagnostic.where;
     std::string line;
     if (!where.file.empty()) {
-        line = where.file;
+        line = escaped(where.file);
         if (where.line) line += ':' + std::to_string(where.line);
         if (where.line && where.column) line += ':' + std::to_string(where.column);
         line += ": ";
@@ -40,7 +42,7 @@ std::string to_string(const Diagnostic& diagnostic) {
     line += name_of(diagnostic.severity);
     line += ": ";
     if (where.entity) line += '#' + std::to_string(where.entity) + ": ";
-    line += diagnostic.message;
+    line += escaped(diagnostic.message);
     if (where.layer || where.x_mm || where.y_mm || where.z_mm) {
         line += " (at";
         if (where.layer) line += " layer " + std::to_string(*where.layer);

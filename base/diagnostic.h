@@ -4,7 +4,8 @@
 //  1. A function that can fail returns Result<T>: the value, or the one Diagnostic that explains why not.
 //  2. What does not stop the work (a healed gap, a skipped entity) is appended to a Diagnostics list that
 //     is passed down; nothing is printed below apps/.
-//  3. to_string() gives one line, "place: severity: message", with every part of the place that is known.
+//  3. to_string() gives one line, "place: severity: message", with every part of the place that is known, and no control
+//     character, whatever the input's bytes are.
 
 #pragma once
 

@@ -1,6 +1,7 @@
+#include "base/diagnostic.h"
+
 #include <doctest/doctest.h>
 
-#include "base/diagnostic.h"
 #include "base/typed_index.h"
 
 using namespace lyr;
@@ -21,6 +22,14 @@ TEST_CASE("diagnostic 3: one line with every part of the place that is known") {
     CHECK(to_string({Severity::error, ExitStatus::usage, "no", {}}) == "error: no");
 }
 
+TEST_CASE("diagnostic 3: control bytes of the input do not reach the terminal") {
+    CHECK(to_string({Severity::error,
+                     ExitStatus::input,
+                     "found \"\x1b[2J\"",
+                     {.file = "a\nb.step", .line = 3}}) ==
+          "a\\nb.step:3: error: found \"\\x1b[2J\"");
+}
+
 TEST_CASE("diagnostic 1: a result is a value or an error") {
     const Result<int> value = 5;
     CHECK(value.ok());
@@ -32,8 +41,7 @@ TEST_CASE("diagnostic 1: a result is a value or an error") {
 
 TEST_CASE("diagnostic: what a temporary result holds outlives it") {
     const auto letters = [](bool good) -> Result<std::vector<std::string>> {
-        if (!good)
-            return Diagnostic{Severity::error, ExitStatus::input, std::string(100, 'e'), {}};
+        if (!good) return Diagnostic{Severity::error, ExitStatus::input, std::string(100, 'e'), {}};
         return std::vector<std::string>{std::string(100, 'a'), std::string(100, 'b')};
     };
     std::string all;

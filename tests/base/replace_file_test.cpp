@@ -1,3 +1,5 @@
+#include "base/replace_file.h"
+
 #include <doctest/doctest.h>
 #include <unistd.h>
 
@@ -6,8 +8,6 @@
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
-
-#include "base/replace_file.h"
 
 using namespace lyr;
 namespace fs = std::filesystem;
