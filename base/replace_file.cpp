@@ -7,63 +7,102 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
+#include <mutex>
+#include <set>
+
+#include "base/file_place.h"
 
 namespace lyr {
 namespace {
 
-Diagnostic cannot_write(const std::string& path, int error) {
+// The temporaries that this process has made and not yet renamed or removed. A signal ends the process with all of
+// them, whoever made them; so the list is as global as the process.
+std::mutex temporaries_lock;
+std::set<std::string> temporaries;
+
+Diagnostic cannot_write(const std::string& name, int error) {
     return {Severity::error,
             ExitStatus::output,
             "cannot write: " + std::string(std::strerror(error)),
-            {.file = path}};
-}
-
-// Names of open descriptors are links to whatever is open: renaming would replace the link.
-bool names_descriptor(const std::string& path) {
-    return path == "/dev/stdout" || path == "/dev/stderr" || path.starts_with("/dev/fd/") ||
-           path.starts_with("/proc/");
-}
-
-// The file that a link leads to, so that the link stays and its target is replaced.
-std::string resolved(const std::string& path) {
-    const std::unique_ptr<char, decltype(&std::free)> real(::realpath(path.c_str(), nullptr),
-                                                           &std::free);
-    return real ? real.get() : path;
+            {.file = name}};
 }
 
 }  // namespace
 
 Result<ReplaceFile> ReplaceFile::open(const std::string& path) {
+    if (path == "-") return on_descriptor(STDOUT_FILENO, standard_output_name);
+    const std::optional<FilePlace> place = place_of(path);
+    if (!place) return cannot_write(path, ELOOP);
+    if (place->descriptor >= 0) return on_descriptor(place->descriptor, path);
     struct stat status {};
     const bool exists = ::stat(path.c_str(), &status) == 0;
     if (exists && S_ISDIR(status.st_mode)) return cannot_write(path, EISDIR);
-    const bool direct = names_descriptor(path) || (exists && !S_ISREG(status.st_mode));
-    if (exists && !direct && ::access(path.c_str(), W_OK) != 0) return cannot_write(path, errno);
-    const std::string target = direct ? path : resolved(path);
-    const std::string temporary = direct ? "" : target + '.' + std::to_string(::getpid()) + ".part";
-    std::FILE* file = std::fopen(direct ? path.c_str() : temporary.c_str(), "wbe");
-    if (!file) return cannot_write(path, errno);
-    return ReplaceFile(target, temporary, file);
+    const bool in_proc = place->path.starts_with("/proc/");  // a descriptor of another process
+    if (in_proc || (exists && !S_ISREG(status.st_mode))) {
+        std::FILE* const file = std::fopen(path.c_str(), "wbe");
+        if (!file) return cannot_write(path, errno);
+        return ReplaceFile(path, file);
+    }
+    if (exists && ::access(path.c_str(), W_OK) != 0) return cannot_write(path, errno);
+    return beside(place->path, path);
 }
 
-ReplaceFile::ReplaceFile(std::string path, std::string temporary, std::FILE* file)
-    : path_(std::move(path)), temporary_(std::move(temporary)), file_(file) {}
+Result<ReplaceFile> ReplaceFile::on_descriptor(int descriptor, const std::string& name) {
+    // fdopen(3) on its own would call a descriptor that is open for reading an invalid argument.
+    const int flags = ::fcntl(descriptor, F_GETFL);
+    if (flags < 0 || (flags & O_ACCMODE) == O_RDONLY) return cannot_write(name, EBADF);
+    const int own = ::fcntl(descriptor, F_DUPFD_CLOEXEC, 0);
+    if (own < 0) return cannot_write(name, errno);
+    std::FILE* const file = ::fdopen(own, "wb");
+    if (!file) {
+        const int error = errno;
+        ::close(own);
+        return cannot_write(name, error);
+    }
+    return ReplaceFile(name, file);
+}
+
+Result<ReplaceFile> ReplaceFile::beside(const std::string& target, const std::string& name) {
+    const std::string temporary = target + '.' + std::to_string(::getpid()) + ".part";
+    const std::lock_guard lock(temporaries_lock);
+    std::FILE* const file = std::fopen(temporary.c_str(), "wbe");
+    if (!file) return cannot_write(name, errno);
+    temporaries.insert(temporary);
+    ReplaceFile made(name, file);
+    made.target_ = target;
+    made.temporary_ = temporary;
+    return made;
+}
 
 ReplaceFile::ReplaceFile(ReplaceFile&& other) noexcept
-    : path_(std::move(other.path_)),
+    : name_(std::move(other.name_)),
+      target_(std::move(other.target_)),
       temporary_(std::move(other.temporary_)),
-      file_(std::exchange(other.file_, nullptr)) {}
+      file_(std::exchange(other.file_, nullptr)),
+      error_(other.error_) {}
 
 ReplaceFile::~ReplaceFile() {
     if (!file_) return;
     std::fclose(file_);
-    if (!temporary_.empty()) ::unlink(temporary_.c_str());
+    discard();
+}
+
+void ReplaceFile::discard() {
+    if (direct()) return;
+    const std::lock_guard lock(temporaries_lock);
+    ::unlink(temporary_.c_str());
+    temporaries.erase(temporary_);
+}
+
+void ReplaceFile::note(bool succeeded) {
+    if (!succeeded && error_ == 0) error_ = errno ? errno : EIO;
 }
 
 void ReplaceFile::write(std::span<const std::byte> bytes) {
-    if (!bytes.empty()) std::fwrite(bytes.data(), 1, bytes.size(), file_);
+    if (bytes.empty() || error_ != 0) return;
+    errno = 0;
+    note(std::fwrite(bytes.data(), 1, bytes.size(), file_) == bytes.size());
 }
 
 void ReplaceFile::write(std::string_view text) {
@@ -71,22 +110,26 @@ void ReplaceFile::write(std::string_view text) {
 }
 
 Status ReplaceFile::commit() {
-    std::FILE* file = std::exchange(file_, nullptr);
+    std::FILE* const file = std::exchange(file_, nullptr);
     errno = 0;
-    const bool failed_before = std::ferror(file) != 0;
-    const bool flushed = std::fflush(file) == 0 && !failed_before &&
-                         (temporary_.empty() || ::fsync(::fileno(file)) == 0);
-    const int error = errno ? errno : EIO;
-    if (std::fclose(file) != 0 || !flushed) {
-        if (!temporary_.empty()) ::unlink(temporary_.c_str());
-        return cannot_write(path_, error);
+    note(std::fflush(file) == 0);
+    if (!direct() && error_ == 0) note(::fsync(::fileno(file)) == 0);
+    note(std::fclose(file) == 0);
+    if (!direct() && error_ == 0) {
+        const std::lock_guard lock(temporaries_lock);
+        note(::rename(temporary_.c_str(), target_.c_str()) == 0);
+        if (error_ == 0) temporaries.erase(temporary_);
     }
-    if (!temporary_.empty() && ::rename(temporary_.c_str(), path_.c_str()) != 0) {
-        const int rename_error = errno;
-        ::unlink(temporary_.c_str());
-        return cannot_write(path_, rename_error);
-    }
-    return Done{};
+    if (error_ == 0) return Done{};
+    discard();
+    return cannot_write(name_, error_);
+}
+
+void end_process(ExitStatus status) {
+    // The lock is kept: what waits for it must not commit any more.
+    temporaries_lock.lock();
+    for (const std::string& temporary : temporaries) ::unlink(temporary.c_str());
+    ::_exit(static_cast<int>(status));
 }
 
 }  // namespace lyr

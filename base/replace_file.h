@@ -2,21 +2,24 @@
 //
 // Contract
 //  1. Until commit() succeeds, the file at `path` is as it was before.
-//  2. Whatever is not committed is removed, also when the program is ended by an exception.
-//  3. A path that is not a regular file (a pipe, a device) or names an open descriptor (/dev/stdout) is written
-//     directly.
-//  4. Through a symbolic link the file that it leads to is replaced; the link stays.
+//  2. Whatever is not committed is removed, also when the program is ended by an exception or by end_process().
+//  3. A path that is not a regular file (a pipe, a device) is written directly. So is an open descriptor: "-", which is
+//     standard output, or a name of one, such as /dev/stdout; what it leads to is neither truncated nor renamed.
+//  4. Through a symbolic link the file that it leads to is replaced, or made if it is not there; the link stays.
+//  5. The first failure is the one that commit() reports.
 
 #pragma once
 
 #include <cstdio>
-#include <memory>
 #include <span>
 #include <string>
 
 #include "base/diagnostic.h"
 
 namespace lyr {
+
+// What messages call the output that is named "-".
+inline constexpr const char* standard_output_name = "standard output";
 
 class ReplaceFile {
 public:
@@ -35,11 +38,20 @@ public:
     Status commit();
 
 private:
-    ReplaceFile(std::string path, std::string temporary, std::FILE* file);
+    ReplaceFile(std::string name, std::FILE* file) : name_(std::move(name)), file_(file) {}
+    static Result<ReplaceFile> on_descriptor(int descriptor, const std::string& name);
+    static Result<ReplaceFile> beside(const std::string& target, const std::string& name);
+    bool direct() const { return temporary_.empty(); }
+    void note(bool succeeded);
+    void discard();
 
-    std::string path_;
-    std::string temporary_;  // empty when written directly
+    std::string name_;                // as the caller says it
+    std::string target_, temporary_;  // empty when written directly
     std::FILE* file_;
+    int error_ = 0;  // errno of the first failure
 };
+
+// Ends the process at once, from any thread, and leaves no temporary behind.
+[[noreturn]] void end_process(ExitStatus status);
 
 }  // namespace lyr

@@ -1,9 +1,13 @@
 #include "base/replace_file.h"
 
 #include <doctest/doctest.h>
+#include <fcntl.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -26,6 +30,24 @@ std::string text_of(const fs::path& path) {
     std::ifstream file(path);
     return {std::istreambuf_iterator<char>(file), {}};
 }
+
+// Standard output leads to a file, and back again at end().
+class StandardOutputTo {
+public:
+    explicit StandardOutputTo(const fs::path& path) {
+        std::fflush(stdout);
+        const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+        ::dup2(file, STDOUT_FILENO);
+        ::close(file);
+    }
+    void end() const {
+        ::dup2(saved_, STDOUT_FILENO);
+        ::close(saved_);
+    }
+
+private:
+    int saved_ = ::dup(STDOUT_FILENO);
+};
 
 std::size_t entries(const fs::path& folder) {
     return static_cast<std::size_t>(
@@ -67,26 +89,45 @@ TEST_CASE("replace file 3: a device is written directly") {
     CHECK(fs::is_character_file("/dev/null"));
 }
 
-TEST_CASE("replace file 3: /dev/stdout stays a link when standard output is a regular file") {
-    const fs::path folder = fresh_folder("stdout");
-    const int saved = ::dup(STDOUT_FILENO);
-    REQUIRE(std::freopen((folder / "caught").c_str(), "w", stdout));
+TEST_CASE("replace file 3: an open descriptor is written where it stands, by any of its names") {
+    const fs::path folder = fresh_folder("descriptor");
+    fs::create_symlink("/dev/stdout", folder / "link");
     const fs::path before = fs::read_symlink("/dev/stdout");
-    bool written = false;
-    {
-        auto file = ReplaceFile::open("/dev/stdout");
-        if (file) {
-            file->write("text");
-            written = file->commit().ok();
+    for (const std::string& name :
+         {std::string("-"), std::string("/dev/stdout"), std::string("/dev/fd/1"),
+          "/proc/" + std::to_string(::getpid()) + "/fd/1", (folder / "link").string()}) {
+        CAPTURE(name);
+        const fs::path caught = folder / "caught";
+        const StandardOutputTo redirected(caught);
+        REQUIRE(::write(STDOUT_FILENO, "before ", 7) == 7);
+        bool written = false;
+        {
+            auto file = ReplaceFile::open(name);
+            if (file) {
+                file->write("text");
+                written = file->commit().ok();
+            }
         }
+        const bool after = ::write(STDOUT_FILENO, " after", 6) == 6;
+        redirected.end();
+        CHECK(written);
+        CHECK(after);
+        CHECK(text_of(caught) == "before text after");
+        CHECK(entries(folder) == 2);
     }
-    ::dup2(saved, STDOUT_FILENO);
-    ::close(saved);
-    CHECK(written);
     REQUIRE(fs::is_symlink("/dev/stdout"));
     CHECK(fs::read_symlink("/dev/stdout") == before);
-    CHECK(text_of(folder / "caught") == "text");
-    CHECK(entries(folder) == 1);
+    CHECK(fs::is_symlink(folder / "link"));
+}
+
+TEST_CASE("replace file 3: a descriptor that cannot be written is said to be bad") {
+    const int reading = ::open("/dev/null", O_RDONLY);
+    REQUIRE(reading >= 0);
+    const auto file = ReplaceFile::open("/dev/fd/" + std::to_string(reading));
+    ::close(reading);
+    REQUIRE(!file);
+    CHECK(file.error().status == ExitStatus::output);
+    CHECK(file.error().message.find(std::strerror(EBADF)) != std::string::npos);
 }
 
 TEST_CASE("replace file 4: a link stays and its target is replaced") {
@@ -103,6 +144,71 @@ TEST_CASE("replace file 4: a link stays and its target is replaced") {
     CHECK(entries(folder) == 2);
 }
 
+TEST_CASE("replace file 4: a link to a file that is not there yet stays, and the file is made") {
+    const fs::path folder = fresh_folder("dangling");
+    fs::create_directories(folder / "far" / "away");
+    fs::create_symlink("../target", folder / "far" / "second");
+    fs::create_symlink("far/second", folder / "first");
+    auto file = ReplaceFile::open(folder / "first");
+    REQUIRE(file);
+    file->write("new");
+    CHECK(file->commit());
+    CHECK(fs::is_symlink(folder / "first"));
+    CHECK(fs::is_symlink(folder / "far" / "second"));
+    CHECK_FALSE(fs::is_symlink(folder / "target"));
+    CHECK(text_of(folder / "target") == "new");
+    CHECK(entries(folder) == 3);
+}
+
+TEST_CASE("replace file 4: a link that cannot be followed is an error and stays") {
+    const fs::path folder = fresh_folder("circle");
+    fs::create_symlink("b", folder / "a");
+    fs::create_symlink("a", folder / "b");
+    fs::create_symlink("missing/out", folder / "nowhere");
+    for (const char* name : {"a", "b", "nowhere"}) {
+        const auto file = ReplaceFile::open(folder / name);
+        REQUIRE(!file);
+        CHECK(file.error().status == ExitStatus::output);
+        CHECK(fs::is_symlink(folder / name));
+    }
+    CHECK(entries(folder) == 3);
+}
+
+TEST_CASE("replace file 5: the first failure is reported, however much is written after it") {
+    for (const std::size_t bytes : {std::size_t{1}, std::size_t{1} << 16, std::size_t{1} << 22}) {
+        CAPTURE(bytes);
+        auto full = ReplaceFile::open("/dev/full");
+        REQUIRE(full);
+        for (int i = 0; i < 3; ++i) full->write(std::string(bytes, 'x'));
+        errno = 0;  // whatever else the program did meanwhile
+        const Status done = full->commit();
+        REQUIRE(!done);
+        CHECK(done.error().message.find(std::strerror(ENOSPC)) != std::string::npos);
+    }
+}
+
+TEST_CASE("replace file 2: the end of the process takes what is not committed with it") {
+    const fs::path folder = fresh_folder("end");
+    std::ofstream(folder / "replaced") << "old";
+    const pid_t child = ::fork();
+    REQUIRE(child >= 0);
+    if (child == 0) {
+        auto whole = ReplaceFile::open(folder / "whole");
+        auto half = ReplaceFile::open(folder / "half");
+        auto replaced = ReplaceFile::open(folder / "replaced");
+        auto moved = std::move(half);
+        const bool committed = whole && moved && replaced && whole->commit().ok();
+        end_process(committed ? ExitStatus::stopped : ExitStatus::internal);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    CHECK(WIFEXITED(status));
+    CHECK(WEXITSTATUS(status) == 8);
+    CHECK(fs::exists(folder / "whole"));
+    CHECK(text_of(folder / "replaced") == "old");
+    CHECK(entries(folder) == 2);
+}
+
 TEST_CASE("replace file: errors are of output and name the path") {
     const fs::path folder = fresh_folder("errors");
     for (const fs::path& path : {folder, folder / "missing" / "out"}) {
@@ -110,14 +216,5 @@ TEST_CASE("replace file: errors are of output and name the path") {
         REQUIRE(!file);
         CHECK(file.error().status == ExitStatus::output);
         CHECK(file.error().where.file == path);
-    }
-    if (fs::exists("/dev/full")) {
-        auto full = ReplaceFile::open("/dev/full");
-        REQUIRE(full);
-        full->write("too much");
-        const Status done = full->commit();
-        REQUIRE(!done);
-        CHECK(done.error().status == ExitStatus::output);
-        CHECK(done.error().message.find("space") != std::string::npos);
     }
 }
