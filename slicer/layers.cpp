@@ -4,10 +4,10 @@ namespace lyr::slicer {
 
 std::vector<double> layer_middles(double part_height_mm, double layer_height_mm) {
     std::vector<double> middles;
-    // A middle that meets the top within resolution is at the top, not below it.
+    // A middle that meets the top within resolution is at the top, not below it; what is no number is below nothing.
     for (std::size_t i = 0;; ++i) {
         const double middle = (static_cast<double>(i) + 0.5) * layer_height_mm;
-        if (middle >= part_height_mm - resolution_mm) return middles;
+        if (!(middle < part_height_mm - resolution_mm)) return middles;
         middles.push_back(middle);
     }
 }

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/replace_file.h"
+#include "base/text.h"
 #include "format/writer.h"
 #include "kernel/brep/placement.h"
 #include "kernel/toolpath/hatch.h"
@@ -205,8 +206,8 @@ Result<Summary> print(Model model, const std::string& source_name, const std::st
             if (made.figures.open > 0 && !options.allow_open) {
                 failed = Diagnostic{Severity::error,
                                     ExitStatus::geometry,
-                                    std::to_string(made.figures.open) +
-                                        " contour ends do not close; --allow-open leaves them out",
+                                    counted(made.figures.open, "open contour end") +
+                                        "; --allow-open leaves such contours out",
                                     {.layer = static_cast<int>(i + 1), .z_mm = middles[i]}};
             } else if (made.error) {
                 failed = made.error;

@@ -1,50 +1,53 @@
 // Sections at given heights, as lines of JSON.
 
-#include <charconv>
-#include <cmath>
+#include <algorithm>
 #include <cstdio>
-#include <fstream>
 
+#include "base/read_text.h"
 #include "base/replace_file.h"
+#include "base/text.h"
 #include "slicer/layers.h"
 #include "slicer/slicer.h"
 
 namespace lyr::slicer {
+namespace {
+
+// Millions of heights; what is longer is another kind of file.
+constexpr std::size_t most_heights_bytes = std::size_t{64} << 20;
+
+}  // namespace
 
 std::string to_json(const SectionFigures& figures) {
     char text[256];
     std::snprintf(text, sizeof text,
-                  "{\"z\":%.17g,\"area_mm2\":%.12g,\"length_mm\":%.12g,\"loops\":%zu,\"lines\":%zu,"
+                  "{\"z\":%s,\"area_mm2\":%.12g,\"length_mm\":%.12g,\"loops\":%zu,\"lines\":%zu,"
                   "\"arcs\":%zu,\"open\":%u}\n",
-                  figures.z_mm, figures.area_mm2, figures.length_mm, figures.loops, figures.lines,
-                  figures.arcs, figures.open);
+                  shortest(figures.z_mm).c_str(), figures.area_mm2, figures.length_mm,
+                  figures.loops, figures.lines, figures.arcs, figures.open);
     return text;
 }
 
 Result<std::vector<double>> read_heights(const std::string& path) {
-    std::ifstream file(path);
-    if (!file)
-        return Diagnostic{
-            Severity::error, ExitStatus::input, "cannot read the heights", {.file = path}};
+    const auto text = read_text(path, most_heights_bytes);
+    if (!text) return text.error();
     std::vector<double> heights;
-    std::string line;
-    for (std::uint32_t number = 1; std::getline(file, line); ++number) {
+    std::uint32_t number = 0;
+    for (std::string_view rest = *text; !rest.empty();) {
+        ++number;
+        const std::string_view line = rest.substr(0, rest.find('\n'));
+        rest.remove_prefix(std::min(line.size() + 1, rest.size()));
         const std::size_t first = line.find_first_not_of(" \t\r");
-        if (first == std::string::npos || line[first] == '#') continue;
-        const std::size_t last = line.find_last_not_of(" \t\r") + 1;
-        double height = 0;
-        const auto [end, error] = std::from_chars(line.data() + first, line.data() + last, height);
-        if (error != std::errc() || end != line.data() + last || !std::isfinite(height)) {
+        if (first == std::string_view::npos || line[first] == '#') continue;
+        const auto word = line.substr(first, line.find_last_not_of(" \t\r") + 1 - first);
+        const auto height = finite_number(word);
+        if (!height) {
             return Diagnostic{Severity::error,
                               ExitStatus::input,
-                              "expected a height in mm, found \"" + line + '"',
-                              {.file = path, .line = number}};
+                              "expected a height in mm, found " + in_quotes(word),
+                              {.file = path == "-" ? standard_input_name : path, .line = number}};
         }
-        heights.push_back(height);
+        heights.push_back(*height);
     }
-    if (file.bad())
-        return Diagnostic{
-            Severity::error, ExitStatus::input, "cannot read the heights", {.file = path}};
     return heights;
 }
 
@@ -77,7 +80,7 @@ Result<Summary> section_at(const Model& model, const std::vector<double>& height
     if (open > 0 && !options.allow_open) {
         return Diagnostic{Severity::error,
                           ExitStatus::geometry,
-                          std::to_string(open) + " contour ends do not close (see the warnings)",
+                          counted(open, "open contour end") + " (see the warnings)",
                           {}};
     }
     return summary;

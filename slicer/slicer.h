@@ -56,13 +56,14 @@ struct SectionFigures {
     std::uint32_t open = 0;
 };
 
+// `step_path` may be "-", standard input.
 Result<Model> load(const std::string& step_path, const Options& options, Diagnostics& diagnostics);
 
 // One line a section: {"z":...,"area_mm2":...,"length_mm":...,"loops":...,"lines":...,"arcs":...,"open":0}
 std::string to_json(const SectionFigures& figures);
 
-// Heights from a text file, one a line; empty lines and lines that start with # are passed over.
-// Errors: not readable, not a number (with its line).
+// Heights from a text file or, as "-", standard input, one a line; empty lines and lines that start with # are passed
+// over. Errors: not readable, not a finite number (with its line).
 Result<std::vector<double>> read_heights(const std::string& path);
 
 Result<Summary> section_at(const Model& model, const std::vector<double>& heights_mm,

@@ -1,9 +1,10 @@
+#include "slicer/layers.h"
+
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <fstream>
 #include <thread>
-
-#include "slicer/layers.h"
 
 using namespace lyr;
 using namespace lyr::slicer;
@@ -50,4 +51,29 @@ TEST_CASE("slicer: heights are read line by line and a wrong one is named with i
     REQUIRE(!bad);
     CHECK(bad.error().where.line == 2);
     CHECK(!read_heights(path + ".missing"));
+}
+
+TEST_CASE("slicer: the bytes of a wrong height do not reach the terminal, nor all of a long line") {
+    const std::string path = std::string(LYR_BUILD) + "/heights.txt";
+    for (const std::string& line :
+         {std::string("\x1b]0;title\x07"), std::string(1'000'000, '\xff'), std::string("nan"),
+          std::string("1e999"), std::string(1, '\0')}) {
+        std::ofstream(path, std::ios::binary) << line << '\n';
+        const auto bad = read_heights(path);
+        REQUIRE(!bad);
+        CHECK(bad.error().where.line == 1);
+        CHECK(bad.error().message.size() < 400);
+        for (const char c : bad.error().message) CHECK(static_cast<unsigned char>(c) >= 0x20);
+    }
+}
+
+TEST_CASE("slicer: a report has the heights as short as they read back") {
+    CHECK(to_json({.z_mm = 25.4}).starts_with("{\"z\":25.4,"));
+    CHECK(to_json({.z_mm = 0.1 + 0.2}).starts_with("{\"z\":0.30000000000000004,"));
+    CHECK(to_json({.z_mm = -2e-300}).starts_with("{\"z\":-2e-300,"));
+}
+
+TEST_CASE("slicer: a height that is no number has no layers") {
+    CHECK(layer_middles(NAN, 0.2).empty());
+    CHECK(layer_middles(1, NAN).empty());
 }
