@@ -1,28 +1,29 @@
 // lyrrun: prints a .lyr file on the lines of a Linux board, or simulates the print.
 
-#include <unistd.h>
-
-#include <CLI/CLI.hpp>
-#include <chrono>
 #include <cstdio>
 #include <string>
 
-#include "base/diagnostic.h"
+#include "apps/command_line.h"
+#include "apps/files.h"
+#include "apps/progress_line.h"
+#include "apps/signal_watch.h"
+#include "base/read_text.h"
 #include "target/config/printer.h"
 #include "target/run/print.h"
 #include "target/run/simulate.h"
-#include "target/run/stop_signals.h"
 
 namespace {
 
 using namespace lyr;
+using namespace lyr::command_line;
 
 struct Arguments {
     std::string lyr_path, printer_path, trace_path;
     bool simulate = false, json = false, no_heat = false;
 };
 
-constexpr const char* examples =
+constexpr Program program{
+    "lyrrun", "Prints a .lyr file on the lines of a Linux board, or simulates it.",
     "Examples:\n"
     "  lyrrun part.lyr --simulate                         the print on a generic printer, without "
     "one\n"
@@ -33,127 +34,102 @@ constexpr const char* examples =
     "A print takes the whole path from the file and starts with the head at start_mm of the\n"
     "printer. Ctrl-C brings the head to rest on its path and releases all lines; a second\n"
     "Ctrl-C does so at once. docs/configuration.md explains printer.toml.\n"
+    "What is reported goes to standard error where the trace goes to standard output.\n"
     "Exit status: 0 done, 2 options, 3 input, 4 not supported yet, 6 output, 7 the machine cannot\n"
-    "or did not do it, 8 stopped on request.\n";
+    "or did not do it, 8 stopped on request.\n"};
+
+// What the reader of printer files takes, too.
+constexpr std::size_t largest_printer_bytes = std::size_t{1} << 20;
 
 void add_options(CLI::App& app, Arguments& arguments) {
-    app.footer(examples);
-    app.set_version_flag("--version", "lyrrun " LYR_VERSION);
-    app.add_option("print", arguments.lyr_path, "The .lyr file that stepc wrote")->required();
-    app.add_option("--printer", arguments.printer_path,
-                   "The machine: axes, limits and lines (printer.toml); needed to print");
-    app.add_flag("--simulate", arguments.simulate,
-                 "Run without a machine and without waiting; check every pulse against the file");
-    app.add_option("--trace", arguments.trace_path,
-                   "Write the simulated lines as a wave file (VCD)");
-    app.add_flag("--json", arguments.json, "Report the simulation as one JSON object");
-    app.add_flag("--no-heat", arguments.no_heat,
-                 "Print although the file sets temperatures, which are passed over");
+    add_file(app, "print", arguments.lyr_path,
+             "The .lyr file that stepc wrote; it is read more than once, so that it cannot be -, "
+             "standard input")
+        ->required();
+    add_file(app, "--printer", arguments.printer_path,
+             "The machine: axes, limits and lines (printer.toml); needed to print; -: standard "
+             "input");
+    add_flag(app, "--simulate", arguments.simulate,
+             "Run without a machine and without waiting; check every pulse against the file");
+    add_file(app, "--trace", arguments.trace_path,
+             "Write the simulated lines as a wave file (VCD); -: standard output");
+    add_flag(app, "--json", arguments.json, "Report the simulation as one JSON object");
+    add_flag(app, "--no-heat", arguments.no_heat,
+             "Print although the file sets temperatures, which are passed over");
 }
 
-// Redrawn at most every tenth of a second, and only where someone can see it.
-class ProgressLine {
-public:
-    void show(const run::Progress& progress) {
-        if (!terminal_) return;
-        const auto now = std::chrono::steady_clock::now();
-        if (now - shown_ < std::chrono::milliseconds(100)) return;
-        shown_ = now;
-        drawn_ = true;
+// How far a simulation or print is, as one line.
+run::ProgressSink shown_on(ProgressLine& line) {
+    return [&line](const run::Progress& progress) {
         const auto time_s = static_cast<long long>(progress.time_s);
-        std::fprintf(stderr, "\r\033[Klayer %u of %u, %lld:%02lld:%02lld", progress.layer,
-                     progress.layers, time_s / 3600, time_s / 60 % 60, time_s % 60);
-    }
-    void clear() {
-        if (drawn_) std::fputs("\r\033[K", stderr);
-        drawn_ = false;
-    }
-
-private:
-    bool terminal_ = ::isatty(STDERR_FILENO) == 1;
-    bool drawn_ = false;
-    std::chrono::steady_clock::time_point shown_{};
-};
-
-int fail(const Diagnostic& diagnostic) {
-    std::fprintf(stderr, "lyrrun: %s\n", to_string(diagnostic).c_str());
-    return static_cast<int>(diagnostic.status);
+        char text[80];
+        std::snprintf(text, sizeof text, "layer %u of %u, %lld:%02lld:%02lld", progress.layer,
+                      progress.layers, time_s / 3600, time_s / 60 % 60, time_s % 60);
+        line.show(text);
+    };
 }
 
-int fail_usage(const std::string& message) {
-    return fail({Severity::error, ExitStatus::usage, message + " (lyrrun --help explains)", {}});
+Result<config::Printer> read_printer(const std::string& path) {
+    if (path.empty()) return config::generic_printer();
+    if (path != "-") return config::read_printer(path);
+    const auto text = read_text(path, largest_printer_bytes);
+    if (!text) return text.error();
+    return config::parse_printer(*text, standard_input_name);
 }
 
-void show(const Diagnostics& diagnostics) {
-    for (const Diagnostic& diagnostic : diagnostics)
-        std::fprintf(stderr, "lyrrun: %s\n", to_string(diagnostic).c_str());
-}
-
-int simulate(const Arguments& arguments, const config::Printer& printer, ProgressLine& line) {
-    const run::StopSignals signals;
-    run::SimulationJob job{arguments.lyr_path, printer, {}, {}, {}};
+Status simulate(const Arguments& arguments, const config::Printer& printer) {
+    const SignalWatch watch(program.name);
+    ProgressLine line;
+    run::SimulationJob job{arguments.lyr_path, printer, {}, shown_on(line), {}};
     if (!arguments.trace_path.empty()) job.trace = arguments.trace_path;
-    job.progress = [&](const run::Progress& progress) { line.show(progress); };
-    job.stop = [&] { return signals.wait_ms(0); };
     const Result<run::SimulationReport> report = run::simulate(job);
     line.clear();
-    if (!report) return fail(report.error());
-    show(report->notes);
+    if (!report) return report.error();
+    show(program, report->notes);
     const std::string text = arguments.json ? run::json_of(*report) : run::text_of(*report);
-    std::fputs(text.c_str(), stdout);
-    if (report->within_limits()) return static_cast<int>(ExitStatus::ok);
-    return fail({Severity::error,
-                 ExitStatus::machine,
-                 "the pulses leave the file's path by more than half a microstep, or are shorter "
-                 "than the drivers need",
-                 {.file = arguments.lyr_path}});
+    if (const Status told = tell(text, {{"the trace", arguments.trace_path}}); !told) return told;
+    if (report->within_limits()) return Done{};
+    return Diagnostic{Severity::error,
+                      ExitStatus::machine,
+                      "the pulses leave the file's path by more than half a microstep, or are "
+                      "shorter than the drivers need",
+                      {.file = arguments.lyr_path}};
 }
 
-int print(const Arguments& arguments, const config::Printer& printer, ProgressLine& line) {
-    run::PrintJob job{arguments.lyr_path, printer, arguments.no_heat, {}};
-    job.progress = [&](const run::Progress& progress) { line.show(progress); };
+Status print(const Arguments& arguments, const config::Printer& printer) {
+    ProgressLine line;
+    const run::PrintJob job{arguments.lyr_path, printer, arguments.no_heat, shown_on(line)};
     const Result<run::PrintReport> report = run::print(job);
     line.clear();
-    if (!report) return fail(report.error());
-    show(report->warnings);
-    std::printf("%s printed on \"%s\"\n%s", arguments.lyr_path.c_str(), printer.name.c_str(),
-                run::text_of(*report).c_str());
-    return static_cast<int>(ExitStatus::ok);
+    if (!report) return report.error();
+    show(program, report->warnings);
+    return tell(arguments.lyr_path + " printed on \"" + printer.name + "\"\n" +
+                run::text_of(*report));
 }
 
-int main_of(int argc, char** argv) {
-    Arguments arguments;
-    CLI::App app("Prints a .lyr file on the lines of a Linux board, or simulates it.", "lyrrun");
-    add_options(app, arguments);
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == 0) return app.exit(error);
-        return fail_usage(error.what());
-    }
+Status work(const Arguments& arguments) {
     // The whole file is checked before the first motion, and then read again.
     if (arguments.lyr_path == "-")
-        return fail_usage("a print is read more than once: give a file, not standard input");
+        return usage("a print is read more than once: give a file, not standard input");
     if (!arguments.simulate && arguments.printer_path.empty())
-        return fail_usage("to print, --printer FILE must say what the machine is");
+        return usage("to print, --printer FILE must say what the machine is");
     if (!arguments.simulate && (!arguments.trace_path.empty() || arguments.json))
-        return fail_usage("--trace and --json need --simulate");
-    Result<config::Printer> printer = arguments.printer_path.empty()
-                                          ? Result(config::generic_printer())
-                                          : config::read_printer(arguments.printer_path);
-    if (!printer) return fail(printer.error());
-    ProgressLine line;
-    return arguments.simulate ? simulate(arguments, *printer, line)
-                              : print(arguments, *printer, line);
+        return usage("--trace and --json need --simulate");
+    if (const Status apart = check_apart(
+            {{"the print", arguments.lyr_path}, {"the printer's file", arguments.printer_path}},
+            {{"the trace", arguments.trace_path}});
+        !apart)
+        return apart;
+    const Result<config::Printer> printer = read_printer(arguments.printer_path);
+    if (!printer) return printer.error();
+    return arguments.simulate ? simulate(arguments, *printer) : print(arguments, *printer);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    // Nothing of this project throws; what the standard library throws (no memory) ends here.
-    try {
-        return main_of(argc, argv);
-    } catch (const std::exception& error) {
-        return fail({Severity::error, ExitStatus::internal, error.what(), {}});
-    }
+    Arguments arguments;
+    return run_main(
+        program, argc, argv, [&](CLI::App& app) { add_options(app, arguments); },
+        [&](const CLI::App&) { return work(arguments); });
 }

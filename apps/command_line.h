@@ -1,0 +1,56 @@
+// What the command lines of the three programs have in common: main(), options and their messages.
+
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+
+#include "base/diagnostic.h"
+
+namespace lyr::command_line {
+
+struct Program {
+    const char* name;
+    const char* purpose;
+    const char* examples;  // what stands below the options in --help
+};
+
+// All of main(): parses, then works. What fails is told in one line on standard error and ends with its status;
+// docs/exit-status.md has the numbers. --help and --version are answered here.
+int run_main(const Program& program, int argc, char** argv,
+             const std::function<void(CLI::App&)>& add_options,
+             const std::function<Status(const CLI::App&)>& work);
+
+// Options that make no sense.
+Diagnostic usage(const std::string& message);
+
+// On standard error, one line each, as far as anyone reads on.
+void show(const Program& program, const Diagnostics& diagnostics);
+
+// The options below refuse what is not of their kind, and say what they expect.
+
+// The name of a file; `path` is left as it is where the option is not given.
+CLI::Option* add_file(CLI::App& app, const std::string& option, std::string& path,
+                      const std::string& text);
+
+void add_flag(CLI::App& app, const std::string& option, bool& flag, const std::string& text);
+
+struct NumberRange {
+    double low, high;
+    const char* unit;
+};
+// As many finite numbers as `values` holds, with commas between them. `shape` is how help shows them: "MM", "X,Y"; the values
+// are its defaults.
+void add_numbers(CLI::App& app, const std::string& option, const char* shape,
+                 std::span<double> values, const NumberRange& range, const std::string& text);
+
+struct CountRange {
+    std::uint32_t low, high;
+};
+void add_count(CLI::App& app, const std::string& option, const char* shape, std::uint32_t& value,
+               const CountRange& range, const std::string& text);
+
+}  // namespace lyr::command_line

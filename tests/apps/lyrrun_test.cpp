@@ -1,0 +1,147 @@
+// The program itself: what it prints where, and its exit status. docs/exit-status.md is its contract.
+
+#include "apps/program.h"
+#include "target/run/print_files.h"
+
+using namespace lyr;
+using namespace lyr::tests;
+
+namespace {
+
+Ended lyrrun(const std::string& arguments) {
+    return Folder("lyrrun").run("lyrrun " + arguments);
+}
+
+void check_failure(const Ended& ended, int status, const std::string& part) {
+    check_failure(ended, "lyrrun", status, part);
+}
+
+}  // namespace
+
+TEST_CASE("lyrrun: a simulation reports on stdout and says nothing on a pipe's stderr") {
+    const Ended ended = lyrrun(write_print("program", {draw_square, draw_arcs}) + " --simulate");
+    CHECK(ended.status == 0);
+    CHECK(ended.err.empty());
+    CHECK(ended.out.find("within half a microstep everywhere") != std::string::npos);
+    CHECK(ended.out.find("print time") != std::string::npos);
+}
+
+TEST_CASE("lyrrun: --json is one line of JSON") {
+    const Ended ended = lyrrun(write_print("json", {draw_square}) + " --simulate --json");
+    CHECK(ended.status == 0);
+    CHECK(ended.out.starts_with("{\"file\":"));
+    CHECK(std::count(ended.out.begin(), ended.out.end(), '\n') == 1);
+    CHECK(std::count(ended.out.begin(), ended.out.end(), '{') ==
+          std::count(ended.out.begin(), ended.out.end(), '}'));
+}
+
+TEST_CASE("lyrrun: help has examples and the exit status") {
+    const Ended ended = lyrrun("--help");
+    CHECK(ended.status == 0);
+    CHECK(ended.out.find("Examples:") != std::string::npos);
+    CHECK(ended.out.find("Exit status:") != std::string::npos);
+}
+
+TEST_CASE("lyrrun: what is wrong comes as one line and with its status") {
+    const std::string good = write_print("good", {draw_square, draw_arcs, draw_hatch});
+    check_failure(lyrrun("/nonexistent.lyr --simulate"), 3, "/nonexistent.lyr");
+    check_failure(lyrrun(LYR_FIXTURES "/printers/generic.toml --simulate"), 3, "generic.toml");
+    check_failure(lyrrun("/dev/null --simulate"), 3, "/dev/null");
+    check_failure(lyrrun("/tmp --simulate"), 3, "/tmp");
+    check_failure(lyrrun(""), 2, "--help");
+    check_failure(lyrrun("- --simulate"), 2, "standard input");
+    check_failure(lyrrun(good), 2, "--printer");
+    check_failure(lyrrun(good + " --simulate --colour"), 2, "--colour");
+    check_failure(lyrrun(good + " --trace x.vcd --printer x.toml"), 2, "--simulate");
+    check_failure(lyrrun(good + " --simulate --printer /nonexistent.toml"), 3, "/nonexistent.toml");
+    check_failure(lyrrun(good + " --simulate --trace /nonexistent/out.vcd"), 6, "/nonexistent");
+    check_failure(lyrrun(good + " --printer " LYR_FIXTURES "/printers/generic.toml"), 7,
+                  "axis.x.step");
+}
+
+TEST_CASE("lyrrun: a file that is cut short names the last whole layer") {
+    const std::string good = write_print("truncated", {draw_square, draw_arcs, draw_hatch});
+    const std::string bytes = text_of(good);
+    const std::string cut = good + ".cut";
+    std::ofstream(cut, std::ios::binary)
+        .write(bytes.data(), static_cast<std::streamsize>(bytes.size() - 60));
+    check_failure(lyrrun(cut + " --simulate"), 3, "layer");
+    std::filesystem::remove(cut);
+}
+
+TEST_CASE("lyrrun: a damaged byte is found") {
+    const std::string good = write_print("damaged", {draw_square, draw_arcs, draw_hatch});
+    std::string bytes = text_of(good);
+    bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 4);
+    const std::string bad = good + ".bad";
+    std::ofstream(bad, std::ios::binary)
+        .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    check_failure(lyrrun(bad + " --simulate"), 3, "");
+    std::filesystem::remove(bad);
+}
+
+TEST_CASE("lyrrun: SIGTERM ends a simulation with status 8 and without a half-written trace") {
+    const Folder folder("lyrrun-signal");
+    const std::string file = write_print("long", std::vector<Drawing>(4000, draw_circles));
+    folder.write("trace.vcd", "old");
+    for (const int signal : {SIGTERM, SIGINT, SIGHUP}) {
+        const Running running(folder, {"lyrrun", file, "--simulate", "--trace", "trace.vcd"},
+                              folder / "err");
+        CHECK(running.wait_for([&] { return folder.files().size() == 3; }));
+        CHECK(running.end(signal) == 8);
+        CHECK(folder.files() == std::set<std::string>{"err", "trace.vcd"});
+        CHECK(text_of(folder / "trace.vcd") == "old");
+        CHECK(text_of(folder / "err") == "lyrrun: error: stopped on request\n");
+    }
+}
+
+TEST_CASE("lyrrun: a trace never takes the place of the print or of the printer's file") {
+    const Folder folder("lyrrun-files");
+    fs::copy_file(write_print("files", {draw_square}), folder / "a.lyr");
+    folder.copy("printers/generic.toml", "p.toml");
+    fs::create_symlink("a.lyr", folder / "link.lyr");
+    fs::create_symlink("p.toml", folder / "link.toml");
+    fs::create_hard_link(folder / "p.toml", folder / "hard.toml");
+    const std::string lyr = text_of(folder / "a.lyr"), printer = text_of(folder / "p.toml");
+    for (const char* trace :
+         {"a.lyr", "./a.lyr", "link.lyr", "p.toml", "link.toml", "hard.toml", "$PWD/p.toml"}) {
+        CAPTURE(trace);
+        check_failure(
+            folder.run("lyrrun a.lyr --simulate --printer p.toml --trace " + std::string(trace)), 2,
+            "the trace would overwrite the print");
+    }
+    check_failure(folder.run("lyrrun link.lyr --simulate --printer link.toml --trace hard.toml"), 2,
+                  "the trace would overwrite the printer's file");
+    check_failure(folder.run("lyrrun a.lyr --simulate --trace - >> a.lyr"), 2,
+                  "the trace would overwrite the print: standard output");
+    CHECK(text_of(folder / "a.lyr") == lyr);
+    CHECK(text_of(folder / "p.toml") == printer);
+    CHECK(folder.files().size() == 5);
+    CHECK(folder.run("lyrrun a.lyr --simulate --printer p.toml --trace t.vcd").status == 0);
+}
+
+TEST_CASE("lyrrun: - is standard output for the trace and standard input for the printer") {
+    const Folder folder("lyrrun-streams");
+    fs::copy_file(write_print("streams", {draw_square, draw_arcs}), folder / "a.lyr");
+    folder.copy("printers/cartesian.toml", "p.toml");
+    const Ended named = folder.run("lyrrun a.lyr --simulate --printer p.toml --trace t.vcd");
+    CHECK(named.status == 0);
+    CHECK(named.err.empty());
+    for (const char* name : {"-", "/dev/stdout"}) {
+        const Ended streams = folder.run(
+            "cat p.toml | lyrrun a.lyr --simulate --printer - --trace " + std::string(name));
+        CHECK(streams.status == 0);
+        CHECK(streams.out == text_of(folder / "t.vcd"));
+        CHECK(streams.err == named.out);
+    }
+    folder.write("bad.toml", "[axis.q]\n");
+    check_failure(folder.run("lyrrun a.lyr --simulate --printer - < bad.toml"), 3,
+                  "standard input:1");
+}
+
+TEST_CASE("lyrrun: output that cannot be written is status 6 and says why") {
+    const std::string file = write_print("full", {draw_square, draw_arcs, draw_hatch});
+    check_failure(lyrrun(file + " --simulate --trace /dev/full"), 6, "No space left on device");
+    check_failure(lyrrun(file + " --simulate >/dev/full"), 6, "No space left on device");
+    check_failure(lyrrun(file + " --simulate >&-"), 6, "standard output");
+}

@@ -1,0 +1,110 @@
+// The program itself: what it prints where, and its exit status. docs/exit-status.md is its contract.
+
+#include "apps/program.h"
+#include "target/run/print_files.h"
+
+using namespace lyr;
+using namespace lyr::tests;
+
+namespace {
+
+// A folder with a print of three layers, a.lyr.
+Folder with_print(const std::string& name) {
+    Folder folder(name);
+    fs::copy_file(write_print(name, {draw_square, draw_arcs, draw_hatch}), folder / "a.lyr");
+    return folder;
+}
+
+void check_failure(const Ended& ended, int status, const std::string& part) {
+    check_failure(ended, "lyrview", status, part);
+}
+
+}  // namespace
+
+TEST_CASE("lyrview: the picture is the same in a file, on standard output and by either name") {
+    const Folder folder = with_print("lyrview-picture");
+    const Ended named = folder.run("lyrview a.lyr --layer 2 -o 2.svg");
+    CHECK(named.status == 0);
+    CHECK(named.out.empty());
+    const std::string picture = text_of(folder / "2.svg");
+    CHECK(picture.find("<svg") != std::string::npos);
+    for (const char* script :
+         {"lyrview a.lyr --layer 2", "lyrview a.lyr --layer 2 -o -", "lyrview - --layer 2 < a.lyr",
+          "cat a.lyr | lyrview - --layer 2 -o /dev/stdout"}) {
+        CAPTURE(script);
+        const Ended ended = folder.run(script);
+        CHECK(ended.status == 0);
+        CHECK(ended.out == picture);
+        CHECK(ended.err.empty());
+    }
+    CHECK(folder.run("lyrview a.lyr --layer 2 -o - > new.svg").status == 0);
+    CHECK(text_of(folder / "new.svg") == picture);
+}
+
+TEST_CASE("lyrview: --info sums up and names the file, or standard input") {
+    const Folder folder = with_print("lyrview-info");
+    const Ended named = folder.run("lyrview a.lyr --info");
+    CHECK(named.status == 0);
+    CHECK(named.out.starts_with("a.lyr: .lyr 1."));
+    const Ended stream = folder.run("lyrview - --info < a.lyr");
+    CHECK(stream.status == 0);
+    CHECK(stream.out.starts_with("standard input: .lyr 1."));
+}
+
+TEST_CASE("lyrview: what is wrong comes as one line and with its status") {
+    const Folder folder = with_print("lyrview-wrong");
+    check_failure(folder.run("lyrview"), 2, "print");
+    check_failure(folder.run("lyrview a.lyr"), 2, "--info or --layer");
+    check_failure(folder.run("lyrview a.lyr --info --layer 1"), 2, "--info or --layer");
+    check_failure(folder.run("lyrview a.lyr --info -o x"), 2, "--layer");
+    check_failure(folder.run("lyrview a.lyr --info -o -"), 2, "--layer");
+    check_failure(folder.run("lyrview '' --info"), 2, "print: expected the name of a file");
+    check_failure(folder.run("lyrview a.lyr --layer 1 -o ''"), 2, "expected the name of a file");
+    check_failure(folder.run("lyrview a.lyr --layer 4"), 3, "3 layers");
+    check_failure(folder.run("lyrview missing.lyr --info"), 3, "missing.lyr");
+    for (const char* layer : {"0", "-1", "nan", "inf", "1e1", "1.5", "99999999999", "''", "x"}) {
+        CAPTURE(layer);
+        check_failure(folder.run("lyrview a.lyr --layer " + std::string(layer)), 2,
+                      "--layer: expected a whole number from 1");
+    }
+    CHECK(folder.files() == std::set<std::string>{"a.lyr"});
+}
+
+TEST_CASE("lyrview: the picture never takes the place of the print") {
+    const Folder folder = with_print("lyrview-files");
+    const std::string before = text_of(folder / "a.lyr");
+    fs::create_symlink("a.lyr", folder / "link");
+    for (const char* output : {"a.lyr", "link", "$PWD/./a.lyr"})
+        check_failure(folder.run("lyrview a.lyr --layer 1 -o " + std::string(output)), 2,
+                      "the picture would overwrite the print");
+    check_failure(folder.run("lyrview a.lyr --layer 1 >> a.lyr"), 2, "standard output");
+    CHECK(text_of(folder / "a.lyr") == before);
+}
+
+TEST_CASE("lyrview: a link as output stays, also one to a file that is not there yet") {
+    const Folder folder = with_print("lyrview-link");
+    fs::create_symlink("2.svg", folder / "link");
+    CHECK(folder.run("lyrview a.lyr --layer 2 -o link").status == 0);
+    CHECK(fs::is_symlink(folder / "link"));
+    CHECK(text_of(folder / "2.svg").find("<svg") != std::string::npos);
+}
+
+TEST_CASE("lyrview: output that cannot be written is status 6 and says why") {
+    const Folder folder = with_print("lyrview-full");
+    check_failure(folder.run("lyrview a.lyr --layer 3 -o /dev/full"), 6, "No space left on device");
+    check_failure(folder.run("lyrview a.lyr --layer 3 >/dev/full"), 6, "No space left on device");
+    check_failure(folder.run("lyrview a.lyr --info >/dev/full"), 6, "No space left on device");
+    check_failure(folder.run("lyrview a.lyr --info >&-"), 6, "standard output");
+    check_failure(folder.run("lyrview a.lyr --layer 3 -o missing/x.svg"), 6, "missing/x.svg");
+}
+
+TEST_CASE("lyrview: a signal ends it with status 8 while it waits for its input") {
+    const Folder folder("lyrview-signal");
+    folder.make_pipe("pipe");
+    for (const int signal : {SIGTERM, SIGINT, SIGHUP}) {
+        const Running running(folder, {"lyrview", "pipe", "--info"}, folder / "err");
+        CHECK(running.wait_for([&] { return running.blocks(signal); }));
+        CHECK(running.end(signal) == 8);
+        CHECK(text_of(folder / "err") == "lyrview: error: stopped on request\n");
+    }
+}

@@ -1,0 +1,182 @@
+// The program itself: what it prints where, and its exit status. docs/exit-status.md is its contract.
+
+#include <regex>
+
+#include "apps/program.h"
+
+using namespace lyr::tests;
+
+namespace {
+
+// A folder with a cuboid of 50.8 x 25.4 x 76.2 mm, p.step, and a file of one height, z.
+Folder with_part(const std::string& name) {
+    Folder folder(name);
+    folder.copy("parts/cuboid.step", "p.step");
+    folder.write("z", "25.4\n");
+    return folder;
+}
+
+const std::set<std::string> untouched{"p.step", "z"};
+
+void check_failure(const Ended& ended, int status, const std::string& part) {
+    check_failure(ended, "stepc", status, part);
+}
+
+}  // namespace
+
+TEST_CASE("stepc: the summary counts one thing as one, and many as many") {
+    const Folder folder = with_part("stepc-summary");
+    const std::regex one_many("\\b1 [a-z ]*s\\b");
+    const Ended sections = folder.run("stepc p.step --section-at z --report r");
+    CHECK(sections.status == 0);
+    CHECK(sections.err.empty());
+    CHECK(sections.out.find("1 section: 1 contour (0 full circles), 4 lines, 0 arcs\n") !=
+          std::string::npos);
+    CHECK_FALSE(std::regex_search(sections.out, one_many));
+    const Ended print = folder.run("stepc p.step --layer-height 10");
+    CHECK(print.status == 0);
+    CHECK(print.out.find("1 solid, 6 faces\n8 layers: 8 contours") != std::string::npos);
+    CHECK_FALSE(std::regex_search(print.out, one_many));
+    CHECK(fs::exists(folder / "p.lyr"));
+}
+
+TEST_CASE("stepc: heights are reported as they were given") {
+    const Folder folder = with_part("stepc-heights");
+    folder.write("z", "25.4\n0.1\n1e-3\n");
+    CHECK(folder.run("stepc p.step --section-at z --report r").status == 0);
+    const std::string report = text_of(folder / "r");
+    for (const char* height : {"{\"z\":25.4,", "{\"z\":0.1,", "{\"z\":0.001,"})
+        CHECK(report.find(height) != std::string::npos);
+}
+
+TEST_CASE("stepc: what is wrong with a heights file is said without its control bytes") {
+    const Folder folder = with_part("stepc-control-bytes");
+    folder.write("bad", "1\n\x1b[2J\x07\xff\n");
+    check_failure(folder.run("stepc p.step --section-at bad --report r"), 3,
+                  "bad:2: error: expected a height in mm, found \"\\x1b[2J\\x07\\xff\"");
+    check_failure(folder.run("stepc p.step --section-at /dev/zero --report r"), 3, "/dev/zero");
+    CHECK_FALSE(fs::exists(folder / "r"));
+}
+
+TEST_CASE("stepc: no number that is not finite or makes no sense gets through, and none hangs") {
+    const Folder folder = with_part("stepc-numbers");
+    const std::vector<std::string> values{"nan",  "-nan",  "inf", "-inf", "1e400", "1e308",
+                                          "1e12", "-1e12", "''",  "0x10", "1mm",   "' 1'"};
+    for (const char* option : {"--layer-height", "--tolerance", "--line-width", "--wall-speed",
+                               "--infill-speed", "--nozzle-temp", "--bed-temp", "--threads"}) {
+        for (const std::string& value : values) {
+            CAPTURE(option);
+            CAPTURE(value);
+            check_failure(folder.run("stepc p.step " + std::string(option) + ' ' + value), 2,
+                          option + std::string(": expected a "));
+        }
+    }
+    for (const char* value :
+         {"inf,0,0", "0,nan,1", "0,0,1e400", "1e12,0,0", "0,0", "0,0,1,0", "0,,1", "0,0,1,", "''"})
+        check_failure(folder.run("stepc p.step --up " + std::string(value)), 2,
+                      "--up: expected X,Y,Z, each from -1000 to 1000");
+    for (const char* value : {"1e12,0", "0,-10001", "nan,0", "0,inf", "0", "0,0,0", "''"})
+        check_failure(folder.run("stepc p.step --at " + std::string(value)), 2,
+                      "--at: expected X,Y, each from -10000 to 10000 mm");
+    check_failure(folder.run("stepc p.step --up 0,0,0"), 2, "no direction");
+    CHECK(folder.files() == untouched);
+}
+
+TEST_CASE("stepc: the length of --up does not matter") {
+    const Folder folder = with_part("stepc-up");
+    CHECK(folder.run("stepc p.step --up -1,0,0 -o a.lyr").status == 0);
+    for (const char* up : {"-1000,0,0", "-1e-300,0,0", "-5e-324,0,0"}) {
+        CHECK(folder.run("stepc p.step -o b.lyr --up " + std::string(up)).status == 0);
+        CHECK(text_of(folder / "a.lyr") == text_of(folder / "b.lyr"));
+    }
+}
+
+TEST_CASE("stepc: an empty name is no file") {
+    const Folder folder = with_part("stepc-empty");
+    check_failure(folder.run("stepc ''"), 2, "part: expected the name of a file");
+    for (const char* option : {"-o", "--output", "--report", "--section-at"}) {
+        CAPTURE(option);
+        check_failure(folder.run("stepc p.step " + std::string(option) + " ''"), 2, "expected");
+        check_failure(folder.run("stepc p.step " + std::string(option)), 2, "expected");
+    }
+    check_failure(folder.run("stepc p.step --output="), 2, "--output: expected");
+    CHECK(folder.files() == untouched);
+}
+
+TEST_CASE("stepc: options that make no sense are told in this program's words") {
+    const Folder folder = with_part("stepc-options");
+    check_failure(folder.run("stepc"), 2, "part is required");
+    check_failure(folder.run("stepc p.step --colour"), 2, "unknown option \"--colour\"");
+    check_failure(folder.run("stepc p.step b c"), 2, "unexpected argument \"b\"");
+    check_failure(folder.run("stepc p.step -o a -o b"), 2, "--output: expected one value, once");
+    check_failure(folder.run("stepc p.step --allow-open=no"), 2, "--allow-open: takes no value");
+    check_failure(folder.run("stepc p.step --section-at z"), 2, "--report");
+    check_failure(folder.run("stepc p.step --section-at z --report r -o a.lyr"), 2, "-o");
+    CHECK(folder.files() == untouched);
+}
+
+TEST_CASE("stepc: no output takes the place of an input or of another output") {
+    const Folder folder = with_part("stepc-files");
+    const std::string part = text_of(folder / "p.step"), heights = text_of(folder / "z");
+    fs::create_symlink("z", folder / "z-link");
+    fs::create_symlink("a.lyr", folder / "a-link");  // to what is not there yet
+    fs::create_hard_link(folder / "p.step", folder / "hard");
+    const auto files = folder.files();
+    const auto refused = [&](const std::string& arguments, const std::string& message) {
+        CAPTURE(arguments);
+        check_failure(folder.run("stepc " + arguments), 2, message);
+        CHECK(folder.files() == files);
+    };
+    for (const char* report : {"z", "./z", "z-link", "$PWD/z", "../stepc-files/z"})
+        refused("p.step --section-at z --report " + std::string(report),
+                "the report would overwrite the heights");
+    refused("p.step --section-at z-link --report z", "the report would overwrite the heights");
+    refused("p.step --section-at new --report new", "the report would overwrite the heights");
+    for (const char* report : {"a.lyr", "./a.lyr", "a-link", "$PWD/a.lyr"})
+        refused("p.step -o a.lyr --report " + std::string(report),
+                "the print and the report would be one file");
+    refused("p.step -o a-link --report a.lyr", "the print and the report would be one file");
+    refused("p.step --report p.lyr", "the print and the report would be one file");
+    refused("p.step -o hard", "the print would overwrite the part");
+    refused("p.step -o a.lyr --report p.step", "the report would overwrite the part");
+    CHECK(text_of(folder / "p.step") == part);
+    CHECK(text_of(folder / "z") == heights);
+    // Nothing meets in /dev/null, and a link does not make two files one.
+    CHECK(folder.run("stepc p.step -o /dev/null --report /dev/null").status == 0);
+    CHECK(folder.run("stepc p.step -o a-link --report b").status == 0);
+    CHECK(fs::is_symlink(folder / "a-link"));
+    CHECK_FALSE(fs::is_symlink(folder / "a.lyr"));
+}
+
+TEST_CASE("stepc: a signal ends it with status 8, and neither output is there in part") {
+    const Folder folder = with_part("stepc-signal");
+    folder.make_pipe("pipe");
+    folder.write("a.lyr", "old");
+    const auto files = folder.files();
+    for (const int signal : {SIGTERM, SIGINT, SIGHUP}) {
+        // Nobody reads the report: stepc waits, with its print begun.
+        const Running running(folder, {"stepc", "p.step", "-o", "a.lyr", "--report", "pipe"},
+                              folder / "../stepc-signal.err");
+        CHECK(running.wait_for([&] { return folder.files() != files; }));
+        CHECK(running.end(signal) == 8);
+        CHECK(folder.files() == files);
+        CHECK(text_of(folder / "a.lyr") == "old");
+        CHECK(text_of(folder / "../stepc-signal.err") == "stepc: error: stopped on request\n");
+    }
+}
+
+TEST_CASE("stepc: a signal that was ignored from the beginning stays so") {
+    const Folder folder = with_part("stepc-nohup");
+    folder.make_pipe("pipe");
+    const Ended ended = folder.run(
+        "trap '' HUP\n"
+        "stepc p.step -o a.lyr --report pipe & process=$!\n"
+        "until ls *.part >/dev/null 2>&1; do sleep 0.01; done\n"
+        "kill -HUP $process\n"
+        "cat pipe >report\n"
+        "wait $process");
+    CHECK(ended.status == 0);
+    CHECK(ended.err.empty());
+    CHECK(fs::exists(folder / "a.lyr"));
+    CHECK(lines_in(text_of(folder / "report")) == 381);
+}
