@@ -7,9 +7,9 @@
 //  2. The report's deviation is that between the positions decoded from the lines and
 //       a. the curves of the file, read and decoded a second time (path_check.h),
 //       b. the planned motion at the same time, at every step, between steps and at the end.
-//  3. within_limits() says that no axis ever deviated by more than half a step in either sense, but for
-//     what an axis moves in the nanosecond that times are rounded to; and that no pulse was shorter
-//     than the printer's file asks.
+//  3. within_limits() says that no axis ever deviated, in either sense, by more than half a step, what the
+//     axis moves at its highest speed in the nanosecond that times are rounded to, and a millionth of a
+//     step for rounding together; and that no pulse was shorter than the printer's file asks.
 //  4. With a trace path, the lines are written there as a wave file, which appears whole or not at all.
 
 #pragma once

@@ -66,6 +66,22 @@ TEST_CASE("simulate 3: deviation, short pulses and figures that are no numbers f
     CHECK_FALSE(bad.within_limits());
 }
 
+TEST_CASE("simulate 3: the limit is half a step, a nanosecond at full speed and a millionth of a step") {
+    SimulationReport report;
+    report.printer = config::generic_printer();
+    for (std::size_t i = 0; i < config::axis_count; ++i) {
+        const config::Axis& axis = report.printer.axes[i];
+        const double limit = 0.5 + axis.max_speed_mm_s * axis.steps_per_mm * 1e-9 + 1e-6;
+        for (AxisValues* steps : {&report.path.steps, &report.planned_steps}) {
+            (*steps)[i] = limit - 1e-9;
+            CHECK(report.within_limits());
+            (*steps)[i] = limit + 1e-9;
+            CHECK_FALSE(report.within_limits());
+            (*steps)[i] = 0.5;
+        }
+    }
+}
+
 TEST_CASE("report: names with quotes and control characters are JSON all the same") {
     SimulationReport report;
     report.file = "a\"b\\c\n.lyr";
