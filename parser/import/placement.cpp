@@ -50,28 +50,55 @@ Result<Vector3> optional_direction(const File& file, InstanceIndex user, Instanc
     return read_direction(file, user, direction);
 }
 
-Result<Eigen::Affine3d> read_operator(const File& file, InstanceIndex item, const Units& units) {
+struct OperatorFields {
+    InstanceIndex axis1, axis2, origin, axis3;
+    double scale = 1;
+};
+
+// CARTESIAN_TRANSFORMATION_OPERATOR has axis1, axis2, local_origin and scale, its subtype ..._3D axis3.
+Result<OperatorFields> operator_fields(const File& file, InstanceIndex item) {
+    constexpr std::string_view type = "CARTESIAN_TRANSFORMATION_OPERATOR_3D";
+    OperatorFields result;
+    const auto read_first_four = [&](Fields& fields, std::size_t first) {
+        result.axis1 = fields.optional_reference(first);
+        result.axis2 = fields.optional_reference(first + 1);
+        result.origin = fields.reference(first + 2);
+        if (!fields.value(first + 3).is_unset()) result.scale = fields.real(first + 3);
+    };
+    if (file.is_complex(item)) {
+        Fields fields(file, file.record(item, "CARTESIAN_TRANSFORMATION_OPERATOR"), 4);
+        read_first_four(fields, 0);
+        if (!fields.ok()) return fields.error();
+        Fields third(file, file.record(item, type), 1);
+        result.axis3 = third.optional_reference(0);
+        if (!third.ok()) return third.error();
+        return result;
+    }
     // Writers agree on the last five attributes, not on how many names stand before them.
     const Result<part21::Arguments> arguments = file.arguments(item);
     if (!arguments) return arguments.error();
     Fields fields(file, item, std::max<std::size_t>(arguments->count(), 6));
     const std::size_t first = arguments->count() < 5 ? 0 : arguments->count() - 5;
-    const InstanceIndex axis1 = fields.optional_reference(first);
-    const InstanceIndex axis2 = fields.optional_reference(first + 1);
-    const InstanceIndex origin = fields.reference(first + 2);
-    const double scale = fields.value(first + 3).is_unset() ? 1.0 : fields.real(first + 3);
-    const InstanceIndex axis3 = fields.optional_reference(first + 4);
+    read_first_four(fields, first);
+    result.axis3 = fields.optional_reference(first + 4);
     if (!fields.ok()) return fields.error();
+    return result;
+}
+
+Result<Eigen::Affine3d> read_operator(const File& file, InstanceIndex item, const Units& units) {
+    const Result<OperatorFields> fields = operator_fields(file, item);
+    if (!fields) return fields.error();
+    const double scale = fields->scale;
     if (!(scale > 0 && std::isfinite(scale))) {
         return file.error(item, named(file, item) + ": the scale must be positive");
     }
-    const Result<Point3> at = read_point(file, item, origin, units);
+    const Result<Point3> at = read_point(file, item, fields->origin, units);
     if (!at) return at.error();
-    const Result<Vector3> d1 = optional_direction(file, item, axis1);
+    const Result<Vector3> d1 = optional_direction(file, item, fields->axis1);
     if (!d1) return d1.error();
-    const Result<Vector3> d2 = optional_direction(file, item, axis2);
+    const Result<Vector3> d2 = optional_direction(file, item, fields->axis2);
     if (!d2) return d2.error();
-    const Result<Vector3> d3 = optional_direction(file, item, axis3);
+    const Result<Vector3> d3 = optional_direction(file, item, fields->axis3);
     if (!d3) return d3.error();
 
     const Vector3 z = d3->isZero() ? Vector3(Vector3::UnitZ()) : *d3;
@@ -162,11 +189,14 @@ Eigen::Affine3d to_affine(const Frame& frame) {
     return transform;
 }
 
+bool is_operator(const File& file, InstanceIndex item) {
+    return file.is(item, "CARTESIAN_TRANSFORMATION_OPERATOR_3D");
+}
+
 Result<Eigen::Affine3d> read_transform(const File& file, InstanceIndex user, InstanceIndex item,
                                        const Units& units) {
-    const std::string_view type = keyword(file, item);
-    if (type == "CARTESIAN_TRANSFORMATION_OPERATOR_3D") return read_operator(file, item, units);
-    if (type != "AXIS2_PLACEMENT_3D") {
+    if (is_operator(file, item)) return read_operator(file, item, units);
+    if (keyword(file, item) != "AXIS2_PLACEMENT_3D") {
         return unexpected(file, user, "AXIS2_PLACEMENT_3D or CARTESIAN_TRANSFORMATION_OPERATOR_3D",
                           item);
     }

@@ -28,6 +28,9 @@ Result<Frame> read_axis(const File& file, InstanceIndex user, InstanceIndex plac
 // From the frame's own coordinates to those that it is stated in.
 Eigen::Affine3d to_affine(const Frame& frame);
 
+// Whether it is a CARTESIAN_TRANSFORMATION_OPERATOR_3D, simple or complex.
+bool is_operator(const File& file, InstanceIndex item);
+
 // AXIS2_PLACEMENT_3D or CARTESIAN_TRANSFORMATION_OPERATOR_3D, which may mirror and scale.
 Result<Eigen::Affine3d> read_transform(const File& file, InstanceIndex user, InstanceIndex item,
                                        const Units& units);

@@ -317,8 +317,7 @@ private:
     }
 
     Result<Eigen::Affine3d> related_placement(const Link& link, const Relationship& r) {
-        const std::string_view type = keyword(file_, r.transformation);
-        if (type == "CARTESIAN_TRANSFORMATION_OPERATOR_3D") {
+        if (is_operator(file_, r.transformation)) {
             const Result<Units> units = units_.of_context(table_[r.second].context);
             if (!units) return units.error();
             const Result<Eigen::Affine3d> t =

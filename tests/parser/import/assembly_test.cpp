@@ -179,6 +179,11 @@ TEST_CASE("2: mapped items place, turn, mirror and scale") {
                 {6, 20, 30}, {10, 22, 36}));
     CHECK(spans(mapped("CARTESIAN_TRANSFORMATION_OPERATOR_3D('',$,$,#1900,$,$)"), {10, 20, 30},
                 {11, 22, 33}));
+    CHECK(spans(mapped("(CARTESIAN_TRANSFORMATION_OPERATOR(#1901,#1902,#1900,2.)"
+                       "CARTESIAN_TRANSFORMATION_OPERATOR_3D(#1903)"
+                       "FUNCTIONALLY_DEFINED_TRANSFORMATION('','')"
+                       "GEOMETRIC_REPRESENTATION_ITEM()REPRESENTATION_ITEM(''))"),
+                {6, 20, 30}, {10, 22, 36}));
 }
 
 TEST_CASE("2: an occurrence that is stated as a mapped item too is one") {
