@@ -7,8 +7,9 @@
 //  2. Every solid is there once for each place that the assembly structure gives it (product occurrences, mapped
 //     items, nested to any depth), with its own copy of the geometry. A file without assembly structure: every
 //     solid once.
-//  3. Solids are MANIFOLD_SOLID_BREP, BREP_WITH_VOIDS and the closed shells of surface models. Each shell has one
-//     Vertex for each VERTEX_POINT and one Edge for each EDGE_CURVE.
+//  3. Solids are MANIFOLD_SOLID_BREP, BREP_WITH_VOIDS, FACETED_BREP and the closed shells of surface models; where a
+//     product has none of these, its closed sets of triangles. Each solid has one Vertex for each VERTEX_POINT and one
+//     Edge for each EDGE_CURVE; of polygons and triangles, one Vertex for each point and one Edge for each side.
 //  4. What belongs to a solid and is not understood is an error (status unsupported) naming the entity and its #id;
 //     what contradicts the standard (missing, cyclic, of the wrong type or size) is one too (status input). No face
 //     is ever left out.

@@ -7,6 +7,9 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "kernel/brep/point_table.h"
+#include "parser/import/placement.h"
+
 namespace lyr::importer {
 
 namespace {
@@ -55,21 +58,27 @@ private:
             if (!fields.ok()) return fields.error();
             return read_face(face, element, flip != !orientation);
         }
-        if (type != "ADVANCED_FACE" && type != "FACE_SURFACE") {
+        const bool has_surface = type == "ADVANCED_FACE" || type == "FACE_SURFACE";
+        if (!has_surface && type != "FACE") {
             if (type.find("FACE") == std::string_view::npos)
                 return unexpected(file_, user, "a face", face);
             return unsupported(file_, face, "a face of " + named(file_, user));
         }
-        Fields fields(file_, face, 4);
+        Fields fields(file_, face, has_surface ? 4 : 2);
         const std::vector<InstanceIndex> bounds = fields.references(1);
-        const InstanceIndex surface = fields.reference(2);
-        const bool same_sense = fields.boolean(3);
+        const InstanceIndex surface = has_surface ? fields.reference(2) : InstanceIndex();
+        const bool same_sense = !has_surface || fields.boolean(3);
         if (!fields.ok()) return fields.error();
         const auto first_loop = static_cast<std::uint32_t>(record_.loops.size());
+        const std::size_t first_use = record_.uses.size();
         for (const InstanceIndex bound : bounds) {
             if (const Status status = read_bound(face, bound, flip); !status) return status;
         }
-        record_.faces.push_back({face, surface, same_sense != flip, first_loop,
+        const bool is_polygon =
+            record_.uses.size() > first_use && !record_.uses[first_use].edge.valid();
+        if (!has_surface && !is_polygon)
+            return unsupported(file_, face, "a face of " + named(file_, user));
+        record_.faces.push_back({face, surface, !has_surface || same_sense != flip, first_loop,
                                  static_cast<std::uint32_t>(bounds.size())});
         return Done{};
     }
@@ -92,13 +101,15 @@ private:
             record_.loops.push_back({loop, vertex, first_use, 0});
             return Done{};
         }
-        if (loop_type != "EDGE_LOOP") {
+        if (loop_type != "EDGE_LOOP" && loop_type != "POLY_LOOP") {
             if (loop_type.find("LOOP") == std::string_view::npos)
                 return unexpected(file_, bound, "a loop", loop);
             return unsupported(file_, loop, "a bound of " + named(file_, user));
         }
-        if (const Status status = read_edge_loop(loop, flip != !orientation); !status)
-            return status;
+        const bool turns = flip != !orientation;
+        const Status status =
+            loop_type == "POLY_LOOP" ? read_polygon(loop, turns) : read_edge_loop(loop, turns);
+        if (!status) return status;
         const auto count = static_cast<std::uint32_t>(record_.uses.size()) - first_use;
         record_.loops.push_back({loop, InstanceIndex(), first_use, count});
         return Done{};
@@ -117,6 +128,35 @@ private:
         }
         if (flip) std::reverse(record_.uses.begin() + first, record_.uses.end());
         return Done{};
+    }
+
+    Status read_polygon(InstanceIndex loop, bool flip) {
+        Fields fields(file_, loop, 2);
+        std::vector<InstanceIndex> points = fields.references(1);
+        if (!fields.ok()) return fields.error();
+        for (InstanceIndex& point : points) {
+            const Result<InstanceIndex> first = first_like(loop, point);
+            if (!first) return first.error();
+            point = *first;
+        }
+        if (flip) std::reverse(points.begin(), points.end());
+        const std::size_t before = record_.uses.size();
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const InstanceIndex from = points[i], to = points[(i + 1) % points.size()];
+            if (from != to) record_.uses.push_back({InstanceIndex(), false, from, to});
+        }
+        if (record_.uses.size() - before < 3)
+            return file_.error(loop, named(file_, loop) + ": three points or more expected");
+        return Done{};
+    }
+
+    // The first point that has been met with the same coordinates.
+    Result<InstanceIndex> first_like(InstanceIndex user, InstanceIndex point) {
+        const Result<Point3> read = read_point(file_, user, point, Units{});
+        if (!read) return read.error();
+        const std::uint32_t number = points_.number_of(*read);
+        if (number == first_points_.size()) first_points_.push_back(point);
+        return first_points_[number];
     }
 
     Result<EdgeUse> read_use(InstanceIndex user, InstanceIndex oriented) {
@@ -139,6 +179,8 @@ private:
     const File& file_;
     part21::Trail& trail_;
     ShellRecord record_;
+    PointTable points_;
+    std::vector<InstanceIndex> first_points_;
 };
 
 }  // namespace
@@ -156,10 +198,13 @@ std::size_t open_edge_count(const ShellRecord& shell) {
     struct Count {
         std::uint32_t along = 0, against = 0;
     };
-    std::unordered_map<std::uint32_t, Count> counts;
+    std::unordered_map<std::uint64_t, Count> counts;
     for (const EdgeUse& use : shell.uses) {
-        Count& count = counts[use.edge.value];
-        ++(use.reversed ? count.against : count.along);
+        const bool is_side = !use.edge.valid();
+        const auto [low, high] = std::minmax(use.from.value, use.to.value);
+        Count& count = counts[is_side ? std::uint64_t{high} << 32 | low : use.edge.value];
+        const bool reversed = is_side ? use.from.value > use.to.value : use.reversed;
+        ++(reversed ? count.against : count.along);
     }
     return static_cast<std::size_t>(std::count_if(
         counts.begin(), counts.end(),

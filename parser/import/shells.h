@@ -5,7 +5,9 @@
 //  1. A face's loops run, and its flag says which way it looks, as seen after all of: ORIENTED_FACE,
 //     ORIENTED_CLOSED_SHELL, the bound's orientation, ORIENTED_EDGE.
 //  2. A use is reversed when the loop runs against the EDGE_CURVE.
-//  3. Polygonal loops, subedges and other topology without edge curves are errors, status unsupported.
+//  3. The sides of a POLY_LOOP are uses of no EDGE_CURVE, from point to point. Points with the same coordinates are
+//     one, and sides without length are none. A face may do without a surface if it is bounded by polygons.
+//  4. Subedges and other topology without edge curves or points are errors, status unsupported.
 
 #pragma once
 
@@ -16,8 +18,9 @@
 namespace lyr::importer {
 
 struct EdgeUse {
-    InstanceIndex edge;  // EDGE_CURVE
+    InstanceIndex edge;  // EDGE_CURVE; not valid(): a polygon's side
     bool reversed;
+    InstanceIndex from = {}, to = {};  // of a polygon's side: CARTESIAN_POINT
 };
 
 struct LoopRecord {
@@ -27,7 +30,7 @@ struct LoopRecord {
 };
 
 struct FaceRecord {
-    InstanceIndex face, surface;
+    InstanceIndex face, surface;  // a face of polygons may have no surface
     bool same_sense;
     std::uint32_t first_loop, loop_count;
 };
@@ -42,7 +45,7 @@ struct ShellRecord {
 Result<ShellRecord> read_shell(const File& file, InstanceIndex user, InstanceIndex shell,
                                part21::Trail& trail);
 
-// How many of the shell's edges are not used once along and once against.
+// How many of the shell's edges and sides are not used once along and once against.
 std::size_t open_edge_count(const ShellRecord& shell);
 
 }  // namespace lyr::importer

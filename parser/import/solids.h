@@ -4,8 +4,8 @@
 //  1. Vertices, edges and faces are shared as the file shares them; each solid has its own.
 //  2. Void shells come after the outer one. Every closed shell looks away from the material, voids into the void,
 //     whichever way the file states it; where it states it the other way, a note says so.
-//  3. Surface models give one solid for each closed shell; what bounds no exact volume (a shell that does not
-//     close, triangles) is listed in `open`, as errors, and its geometry is not read.
+//  3. Surface models give one solid for each closed shell, sets of triangles one solid each; what bounds no volume
+//     (a shell that does not close) is listed in `open`, as errors, and its geometry is not read.
 
 #pragma once
 
@@ -25,11 +25,11 @@ struct Part {
 // What an item of a representation is to this program.
 enum class ItemKind {
     other,          // bounds no volume: curves, points, placements, surfaces
-    solid,          // MANIFOLD_SOLID_BREP, BREP_WITH_VOIDS
+    solid,          // MANIFOLD_SOLID_BREP, BREP_WITH_VOIDS, FACETED_BREP
     surface_model,  // SHELL_BASED_SURFACE_MODEL, FACE_BASED_SURFACE_MODEL
-    tessellated,  // TESSELLATED_SOLID, TESSELLATED_SHELL: often beside the exact solid that they approximate
-    mapped,       // MAPPED_ITEM
-    unsupported,  // a solid of another kind
+    tessellated,    // triangles (triangles.h): often beside the exact solid that they approximate
+    mapped,         // MAPPED_ITEM
+    unsupported,    // a solid of another kind
 };
 ItemKind kind_of(const File& file, InstanceIndex item);
 

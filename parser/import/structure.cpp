@@ -223,6 +223,31 @@ private:
                 g.items.emplace_back(item, RepresentationId(i));
             }
         }
+        leave_out_approximations();
+    }
+
+    // Triangles beside an exact shape of the same product, or of a file without products, are that shape once more.
+    void leave_out_approximations() {
+        const auto is_exact = [&](const auto& item) {
+            const ItemKind kind = kind_of(file_, item.first);
+            return kind == ItemKind::solid || kind == ItemKind::surface_model;
+        };
+        const auto has_exact = [&](const Group& g) {
+            return std::any_of(g.items.begin(), g.items.end(), is_exact);
+        };
+        const bool any_exact = std::any_of(groups_.begin(), groups_.end(), has_exact);
+        for (Group& g : groups_) {
+            if (!has_exact(g) && (g.product.valid() || !any_exact)) continue;
+            std::erase_if(g.items, [&](const auto& item) {
+                if (kind_of(file_, item.first) != ItemKind::tessellated) return false;
+                diagnostics_.push_back(
+                    warning(file_, item.first,
+                            named(file_, item.first) +
+                                " is made of triangles; the exact shape beside it is taken",
+                            ExitStatus::unsupported));
+                return true;
+            });
+        }
     }
 
     Result<std::size_t> count(RepresentationId id) {
@@ -325,7 +350,7 @@ private:
             if (!t) return t.error();
             return link.child_is_first ? *t : Eigen::Affine3d(t->inverse());
         }
-        if (type != "ITEM_DEFINED_TRANSFORMATION") {
+        if (keyword(file_, r.transformation) != "ITEM_DEFINED_TRANSFORMATION") {
             return unexpected(file_, r.instance, "ITEM_DEFINED_TRANSFORMATION", r.transformation);
         }
         Fields fields(file_, r.transformation, 4);
