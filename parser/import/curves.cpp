@@ -4,9 +4,11 @@
 
 #include <cmath>
 
+#include "kernel/geometry/tolerance.h"
 #include "parser/import/bounded_curve.h"
 #include "parser/import/bspline.h"
 #include "parser/import/offset.h"
+#include "parser/import/pcurve.h"
 #include "parser/import/placement.h"
 
 namespace lyr::importer {
@@ -25,7 +27,7 @@ Result<Curve> read_line(const File& file, InstanceIndex instance, const Units& u
     const InstanceIndex orientation = vector_fields.reference(1);
     const double magnitude = vector_fields.real(2);
     if (!vector_fields.ok()) return vector_fields.error();
-    const Result<Vector3> direction = read_direction(file, vector, orientation);
+    const Result<Vector3> direction = read_direction(file, vector, orientation, units);
     if (!direction) return direction.error();
     return Curve(Line{*origin, magnitude < 0 ? Vector3(-*direction) : *direction});
 }
@@ -138,11 +140,20 @@ Result<DirectedCurve> read_curve(const File& file, InstanceIndex user, InstanceI
     if (type == "POLYLINE") return directed(read_polyline(file, curve, units));
     if (is_composite(type)) return directed(read_composite(file, curve, units, trail));
     if (type == "OFFSET_CURVE_3D") return read_offset_curve(file, curve, units, trail);
+    if (type == "PCURVE" || type == "BOUNDED_PCURVE") return read_pcurve(file, curve, units, trail);
     if (type == "CURVE_REPLICA") return read_replica(file, curve, units, trail);
     const bool is_curve =
         type.empty() || type.find("CURVE") != std::string_view::npos || type == "CLOTHOID";
     if (!is_curve) return unexpected(file, user, "a curve", curve);
     return unsupported(file, curve, "a curve of " + named(file, user));
+}
+
+Curve simplified(const Curve& curve) {
+    const auto* spline = std::get_if<BSplineCurve>(&curve);
+    if (spline == nullptr || spline->control_points.size() != 2) return curve;
+    const Vector3 along = spline->control_points[1] - spline->control_points[0];
+    if (along.norm() <= resolution_mm) return curve;
+    return Line{spline->control_points[0], along.normalized()};
 }
 
 }  // namespace lyr::importer

@@ -87,7 +87,7 @@ Result<DirectedCurve> read_offset_curve(const File& file, InstanceIndex instance
     const InstanceIndex basis = fields.reference(1), reference = fields.reference(4);
     const double distance_mm = fields.real(2) * units.length_mm;
     if (!fields.ok()) return fields.error();
-    const Result<Vector3> direction = read_direction(file, instance, reference);
+    const Result<Vector3> direction = read_direction(file, instance, reference, units);
     if (!direction) return direction.error();
     Result<DirectedCurve> result = read_curve(file, instance, basis, units, trail);
     if (!result) return result;

@@ -30,14 +30,16 @@ Vector3 first_projected(const Vector3& z, const Vector3* wanted) {
     return x.isZero() ? across(Vector3::UnitY(), z) : x;
 }
 
-Result<std::array<double, 3>> read_triple(const File& file, InstanceIndex instance) {
+// The coordinates of a point or direction; of a plane one, with z = 0.
+Result<std::array<double, 3>> read_triple(const File& file, InstanceIndex instance, int dimension) {
     Fields fields(file, instance, 2);
     const part21::Value list = fields.value(1);
     if (!fields.ok()) return fields.error();
     std::array<double, 3> values{};
     const Result<std::size_t> count = list.read_reals(values);
     if (!count) return count.error();
-    if (*count != 3) return list.expected("three numbers");
+    if (*count != static_cast<std::size_t>(dimension))
+        return list.expected(dimension == 3 ? "three numbers" : "two numbers");
     for (const double value : values) {
         if (!std::isfinite(value)) return list.expected("finite numbers");
     }
@@ -45,9 +47,10 @@ Result<std::array<double, 3>> read_triple(const File& file, InstanceIndex instan
 }
 
 // An optional direction attribute; zero when absent.
-Result<Vector3> optional_direction(const File& file, InstanceIndex user, InstanceIndex direction) {
+Result<Vector3> optional_direction(const File& file, InstanceIndex user, InstanceIndex direction,
+                                   const Units& units) {
     if (!direction.valid()) return Vector3(Vector3::Zero());
-    return read_direction(file, user, direction);
+    return read_direction(file, user, direction, units);
 }
 
 struct OperatorFields {
@@ -94,11 +97,11 @@ Result<Eigen::Affine3d> read_operator(const File& file, InstanceIndex item, cons
     }
     const Result<Point3> at = read_point(file, item, fields->origin, units);
     if (!at) return at.error();
-    const Result<Vector3> d1 = optional_direction(file, item, fields->axis1);
+    const Result<Vector3> d1 = optional_direction(file, item, fields->axis1, units);
     if (!d1) return d1.error();
-    const Result<Vector3> d2 = optional_direction(file, item, fields->axis2);
+    const Result<Vector3> d2 = optional_direction(file, item, fields->axis2, units);
     if (!d2) return d2.error();
-    const Result<Vector3> d3 = optional_direction(file, item, fields->axis3);
+    const Result<Vector3> d3 = optional_direction(file, item, fields->axis3, units);
     if (!d3) return d3.error();
 
     const Vector3 z = d3->isZero() ? Vector3(Vector3::UnitZ()) : *d3;
@@ -120,15 +123,16 @@ Result<Point3> read_point(const File& file, InstanceIndex user, InstanceIndex po
                           const Units& units) {
     const std::string_view type = keyword(file, point);
     if (type != "CARTESIAN_POINT") return unexpected(file, user, "CARTESIAN_POINT", point);
-    const auto values = read_triple(file, point);
+    const auto values = read_triple(file, point, units.dimension);
     if (!values) return values.error();
     return Point3(units.length_mm * Point3(values->data()));
 }
 
-Result<Vector3> read_direction(const File& file, InstanceIndex user, InstanceIndex direction) {
+Result<Vector3> read_direction(const File& file, InstanceIndex user, InstanceIndex direction,
+                               const Units& units) {
     if (keyword(file, direction) != "DIRECTION")
         return unexpected(file, user, "DIRECTION", direction);
-    const auto values = read_triple(file, direction);
+    const auto values = read_triple(file, direction, units.dimension);
     if (!values) return values.error();
     const Vector3 vector(values->data());
     const double length = vector.stableNorm();
@@ -138,19 +142,20 @@ Result<Vector3> read_direction(const File& file, InstanceIndex user, InstanceInd
 
 Result<Frame> read_frame(const File& file, InstanceIndex user, InstanceIndex placement,
                          const Units& units) {
-    if (keyword(file, placement) != "AXIS2_PLACEMENT_3D") {
-        return unexpected(file, user, "AXIS2_PLACEMENT_3D", placement);
-    }
-    Fields fields(file, placement, 4);
+    // In a plane there is no axis to state.
+    const bool is_plane = units.dimension == 2;
+    const std::string_view expected = is_plane ? "AXIS2_PLACEMENT_2D" : "AXIS2_PLACEMENT_3D";
+    if (keyword(file, placement) != expected) return unexpected(file, user, expected, placement);
+    Fields fields(file, placement, is_plane ? 3 : 4);
     const InstanceIndex location = fields.reference(1);
-    const InstanceIndex axis = fields.optional_reference(2);
-    const InstanceIndex reference = fields.optional_reference(3);
+    const InstanceIndex axis = is_plane ? InstanceIndex() : fields.optional_reference(2);
+    const InstanceIndex reference = fields.optional_reference(is_plane ? 2 : 3);
     if (!fields.ok()) return fields.error();
     const Result<Point3> origin = read_point(file, placement, location, units);
     if (!origin) return origin.error();
-    const Result<Vector3> z_stated = optional_direction(file, placement, axis);
+    const Result<Vector3> z_stated = optional_direction(file, placement, axis, units);
     if (!z_stated) return z_stated.error();
-    const Result<Vector3> x_stated = optional_direction(file, placement, reference);
+    const Result<Vector3> x_stated = optional_direction(file, placement, reference, units);
     if (!x_stated) return x_stated.error();
     Frame frame;
     frame.origin = *origin;
@@ -171,7 +176,7 @@ Result<Frame> read_axis(const File& file, InstanceIndex user, InstanceIndex plac
     if (!fields.ok()) return fields.error();
     const Result<Point3> origin = read_point(file, placement, location, units);
     if (!origin) return origin.error();
-    const Result<Vector3> z_stated = optional_direction(file, placement, axis);
+    const Result<Vector3> z_stated = optional_direction(file, placement, axis, units);
     if (!z_stated) return z_stated.error();
     Frame frame;
     frame.origin = *origin;

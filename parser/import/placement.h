@@ -15,9 +15,10 @@ namespace lyr::importer {
 
 Result<Point3> read_point(const File& file, InstanceIndex user, InstanceIndex point,
                           const Units& units);
-Result<Vector3> read_direction(const File& file, InstanceIndex user, InstanceIndex direction);
+Result<Vector3> read_direction(const File& file, InstanceIndex user, InstanceIndex direction,
+                               const Units& units);
 
-// AXIS2_PLACEMENT_3D
+// AXIS2_PLACEMENT_3D; within the parameters of a surface AXIS2_PLACEMENT_2D.
 Result<Frame> read_frame(const File& file, InstanceIndex user, InstanceIndex placement,
                          const Units& units);
 

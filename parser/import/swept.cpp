@@ -17,15 +17,6 @@ namespace lyr::importer {
 
 namespace {
 
-// A spline that is one straight line is swept like a line.
-Curve simplified(const Curve& curve) {
-    const auto* spline = std::get_if<BSplineCurve>(&curve);
-    if (spline == nullptr || spline->control_points.size() != 2) return curve;
-    const Vector3 along = spline->control_points[1] - spline->control_points[0];
-    if (along.norm() <= resolution_mm) return curve;
-    return Line{spline->control_points[0], along.normalized()};
-}
-
 Diagnostic degenerate(const File& file, InstanceIndex instance) {
     return file.error(instance, named(file, instance) + ": the sweep covers no area");
 }
@@ -168,7 +159,7 @@ Result<StatedSurface> read_extrusion(const File& file, InstanceIndex instance, c
     const InstanceIndex orientation = vector_fields.reference(1);
     const double magnitude = vector_fields.real(2);
     if (!vector_fields.ok()) return vector_fields.error();
-    const Result<Vector3> stated_direction = read_direction(file, vector, orientation);
+    const Result<Vector3> stated_direction = read_direction(file, vector, orientation, units);
     if (!stated_direction) return stated_direction.error();
     const Vector3 direction = magnitude < 0 ? Vector3(-*stated_direction) : *stated_direction;
     const Result<DirectedCurve> directed = read_curve(file, instance, swept, units, trail);

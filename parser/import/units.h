@@ -19,6 +19,8 @@ struct Units {
     double length_mm = 1;
     double angle_rad = 1;
     double uncertainty_mm = 0;  // 0: not stated
+    int dimension =
+        3;  // of points and directions; 2 within the parameters of a surface: read with z = 0
 };
 
 class UnitTable {

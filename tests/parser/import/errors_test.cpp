@@ -84,7 +84,7 @@ TEST_CASE("4: every surface that is not supported is named") {
 }
 
 TEST_CASE("4: every curve that is not supported is named") {
-    for (const std::string type : {"PCURVE", "CLOTHOID"}) {
+    for (const std::string type : {"INTERSECTION_SPIRAL_CURVE", "CLOTHOID"}) {
         Recipe recipe;
         recipe.curve = text(type + "('',$)");
         check_unsupported(error_of(recipe), type);
