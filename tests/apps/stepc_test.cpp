@@ -1,6 +1,6 @@
 // The program itself: what it prints where, and its exit status. docs/exit-status.md is its contract.
 
-#include <regex>
+#include <cctype>
 
 #include "apps/program.h"
 
@@ -16,6 +16,17 @@ Folder with_part(const std::string& name) {
     return folder;
 }
 
+// Whether the text says "1 lines" or the like of anything that a summary counts.
+bool has_one_of_many(const std::string& text) {
+    for (const char* noun : {"solids", "faces", "layers", "sections", "contours", "full circles",
+                             "lines", "arcs", "bytes", "warnings"}) {
+        const std::size_t at = text.find(std::string("1 ") + noun);
+        if (at != text.npos && (at == 0 || !std::isdigit(static_cast<unsigned char>(text[at - 1]))))
+            return true;
+    }
+    return false;
+}
+
 const std::set<std::string> untouched{"p.step", "z"};
 
 void check_failure(const Ended& ended, int status, const std::string& part) {
@@ -26,17 +37,16 @@ void check_failure(const Ended& ended, int status, const std::string& part) {
 
 TEST_CASE("stepc: the summary counts one thing as one, and many as many") {
     const Folder folder = with_part("stepc-summary");
-    const std::regex one_many("\\b1 [a-z ]*s\\b");
     const Ended sections = folder.run("stepc p.step --section-at z --report r");
     CHECK(sections.status == 0);
     CHECK(sections.err.empty());
     CHECK(sections.out.find("1 section: 1 contour (0 full circles), 4 lines, 0 arcs\n") !=
           std::string::npos);
-    CHECK_FALSE(std::regex_search(sections.out, one_many));
+    CHECK_FALSE(has_one_of_many(sections.out));
     const Ended print = folder.run("stepc p.step --layer-height 10");
     CHECK(print.status == 0);
     CHECK(print.out.find("1 solid, 6 faces\n8 layers: 8 contours") != std::string::npos);
-    CHECK_FALSE(std::regex_search(print.out, one_many));
+    CHECK_FALSE(has_one_of_many(print.out));
     CHECK(fs::exists(folder / "p.lyr"));
 }
 
