@@ -76,13 +76,13 @@ Result<Summary> section_at(const Model& model, const std::vector<double>& height
             progress("cutting", i + 1, heights_mm.size());
             return true;
         });
-    if (Status written = report->commit(); !written) return written.error();
     if (open > 0 && !options.allow_open) {
         return Diagnostic{Severity::error,
                           ExitStatus::geometry,
                           counted(open, "open contour end") + " (see the warnings)",
                           {}};
     }
+    if (Status written = report->commit(); !written) return written.error();
     return summary;
 }
 

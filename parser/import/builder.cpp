@@ -222,7 +222,8 @@ Status Builder::add_loop(const ShellRecord& record, const LoopRecord& loop) {
     }
     for (std::uint32_t i = 0; i < loop.use_count; ++i) {
         const EdgeUse& use = record.uses[loop.first_use + i];
-        const Result<Coedge> coedge = coedge_of(loop.loop, use);
+        Result<Coedge> coedge = coedge_of(loop.loop, use);
+        if (!coedge && find_stand_ins(record, loop, i)) coedge = coedge_of(loop.loop, use);
         if (!coedge) return coedge.error();
         model_.coedges.push_back(*coedge);
     }
@@ -242,6 +243,52 @@ Result<Coedge> Builder::coedge_of(InstanceIndex loop, const EdgeUse& use) {
     if (!to) return to.error();
     return sides_.of_side(sides_.vertex_at(*from, file_.id(use.from)),
                           sides_.vertex_at(*to, file_.id(use.to)), file_.id(loop));
+}
+
+namespace {
+
+// The attributes of EDGE_CURVE with the vertices that a use of it starts and ends at.
+std::size_t start_attribute(const EdgeUse& use) {
+    return use.reversed ? 2 : 1;
+}
+std::size_t end_attribute(const EdgeUse& use) {
+    return use.reversed ? 1 : 2;
+}
+
+// A reference to nothing, as opposed to one into another file.
+bool is_undefined(const Result<InstanceIndex>& reference) {
+    return !reference && reference.error().status == ExitStatus::input;
+}
+
+}  // namespace
+
+// Where an edge names a vertex that the file does not define, the edge before or after it in the loop has it.
+bool Builder::find_stand_ins(const ShellRecord& record, const LoopRecord& loop, std::uint32_t i) {
+    const auto at = [&](std::uint32_t k) {
+        return record.uses[loop.first_use + k % loop.use_count];
+    };
+    const EdgeUse use = at(i), before = at(i + loop.use_count - 1), after = at(i + 1);
+    if (!use.edge.valid() || !before.edge.valid() || !after.edge.valid()) return false;
+    bool found = false;
+    for (const bool start : {true, false}) {
+        const std::size_t attribute = start ? start_attribute(use) : end_attribute(use);
+        const EdgeUse& neighbour = start ? before : after;
+        const std::size_t shared = start ? end_attribute(neighbour) : start_attribute(neighbour);
+        const Fields own(file_, use.edge, 5), other(file_, neighbour.edge, 5);
+        if (!own.ok() || !other.ok()) return false;
+        const Result<InstanceIndex> missing = own.value(attribute).as_reference();
+        if (!is_undefined(missing)) continue;
+        const Result<InstanceIndex> vertex = other.value(shared).as_reference();
+        if (!vertex) return false;
+        stand_ins_[{use.edge.value, attribute}] = *vertex;
+        Diagnostic warning = missing.error();
+        warning.severity = Severity::warning;
+        warning.message += "; the vertex of " + named(file_, neighbour.edge) +
+                           ", next to it in the loop, stands in";
+        diagnostics_.push_back(std::move(warning));
+        found = true;
+    }
+    return found;
 }
 
 Result<VertexId> Builder::vertex_of(InstanceIndex user, InstanceIndex instance) {
@@ -266,7 +313,11 @@ Result<EdgeId> Builder::edge_of(InstanceIndex instance) {
     if (known != edges_.end()) return known->second;
     // name, edge_start, edge_end, edge_geometry, same_sense
     Fields fields(file_, instance, 5);
-    const InstanceIndex from = fields.reference(1), to = fields.reference(2);
+    const auto vertex = [&](std::size_t attribute) {
+        const auto stand_in = stand_ins_.find({instance.value, attribute});
+        return stand_in != stand_ins_.end() ? stand_in->second : fields.reference(attribute);
+    };
+    const InstanceIndex from = vertex(1), to = vertex(2);
     const InstanceIndex geometry = fields.reference(3);
     const bool same_sense = fields.boolean(4);
     if (!fields.ok()) return fields.error();

@@ -4,8 +4,10 @@
 
 #pragma once
 
+#include <map>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "kernel/brep/model.h"
@@ -39,6 +41,7 @@ private:
     Result<StatedSurface> surface_of(const FaceRecord& face, std::uint32_t first_loop);
     Status add_loop(const ShellRecord& record, const LoopRecord& loop);
     Result<Coedge> coedge_of(InstanceIndex loop, const EdgeUse& use);
+    bool find_stand_ins(const ShellRecord& record, const LoopRecord& loop, std::uint32_t use);
     Result<VertexId> vertex_of(InstanceIndex user, InstanceIndex instance);
     Result<EdgeId> edge_of(InstanceIndex instance);
 
@@ -49,6 +52,8 @@ private:
     Model model_;
     std::unordered_map<std::uint32_t, VertexId> vertices_;  // by VERTEX_POINT
     std::unordered_map<std::uint32_t, EdgeId> edges_;       // by EDGE_CURVE
+    // Vertices of the neighbours for those that the file does not define, by EDGE_CURVE and its attribute.
+    std::map<std::pair<std::uint32_t, std::size_t>, InstanceIndex> stand_ins_;
     PolygonSides sides_{model_};
 };
 

@@ -37,6 +37,28 @@ TEST_CASE("1, 3: a box, whatever way the flags state it") {
     }
 }
 
+TEST_CASE("a vertex that is not in the file is that of the edge next to it (bug31292)") {
+    for (const int edge : {0, 5, 11}) {
+        for (const int end : {1, 2}) {
+            CAPTURE(edge);
+            CAPTURE(end);
+            StepText step;
+            step.representation({step.box({1, 2, 3}, {4, 6, 8})}, step.millimetres());
+            step.spoil("EDGE_CURVE", edge, end, "#18446744073709551615");
+            const Imported result = imported(step);
+            REQUIRE(result.diagnostics.size() == 1);
+            CHECK(result.diagnostics[0].severity == Severity::warning);
+            CHECK(mentions(result.diagnostics[0], "#18446744073709551615 is not defined"));
+            check_box(result.model, {1, 2, 3}, {4, 6, 8});
+        }
+    }
+    // Where no edge has it, there is nothing to stand in.
+    StepText step;
+    step.representation({step.box({1, 2, 3}, {4, 6, 8})}, step.millimetres());
+    for (int edge = 0; edge < 12; ++edge) step.spoil("EDGE_CURVE", edge, 1, "#999999");
+    CHECK(mentions(refused(step), "#999999 is not defined"));
+}
+
 TEST_CASE("1, 3: a cylinder with a seam") {
     StepText step;
     step.representation({step.cylinder(5, 12)}, step.millimetres());

@@ -35,6 +35,14 @@ public:
         body_.append(ref(id)).append("=").append(text).append(";\n");
     }
 
+    // Spoils the n-th instance of a type: its attribute `index` becomes `text`.
+    void spoil(const std::string& type, int n, int index, const std::string& text) {
+        std::size_t at = 0;
+        for (int i = 0; i <= n; ++i) at = body_.find(type + "(", at) + type.size() + 1;
+        for (int i = 0; i < index; ++i) at = body_.find(',', at) + 1;
+        body_.replace(at, body_.find_first_of(",)", at) - at, text);
+    }
+
     std::string text() const {
         return "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\n"
                "FILE_NAME('','',(''),(''),'','','');\nFILE_SCHEMA(('AUTOMOTIVE_DESIGN'));\nENDSEC;"
