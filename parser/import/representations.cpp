@@ -29,20 +29,31 @@ part21::RecordIndex body(const File& file, InstanceIndex instance) {
 
 // What a SHAPE_DEFINITION_REPRESENTATION defines the shape of: a product definition (also by way of an aspect of its
 // shape) or a usage of one. Not valid() for anything else.
-InstanceIndex defined(const File& file, InstanceIndex definition) {
+struct Defined {
+    InstanceIndex subject;
+    bool by_aspect = false;
+};
+
+Defined defined(const File& file, InstanceIndex definition) {
+    Defined result{definition};
     // A property definition's third attribute leads to what it is a property of, an aspect's to a property.
     constexpr int longest_way = 4;
     for (int i = 0; i < longest_way; ++i) {
-        const std::string_view type = keyword(file, definition);
+        const std::string_view type = keyword(file, result.subject);
         const bool is_property =
             type == "PRODUCT_DEFINITION_SHAPE" || type == "PROPERTY_DEFINITION";
-        const bool is_aspect = type.find("SHAPE_ASPECT") != std::string_view::npos;
-        if (!is_property && !is_aspect) return definition;
-        const Result<part21::Arguments> arguments = file.arguments(definition);
+        // Features are aspects of further types at once.
+        const part21::RecordIndex aspect = file.record(result.subject, "SHAPE_ASPECT");
+        const bool is_aspect =
+            type.find("SHAPE_ASPECT") != std::string_view::npos || aspect.valid();
+        if (!is_property && !is_aspect) return result;
+        const Result<part21::Arguments> arguments =
+            aspect.valid() ? file.arguments(aspect) : file.arguments(result.subject);
         if (!arguments) return {};
         const Result<InstanceIndex> next = (*arguments)[2].as_reference();
         if (!next) return {};
-        definition = *next;
+        result.subject = *next;
+        result.by_aspect = result.by_aspect || is_aspect;
     }
     return {};
 }
@@ -144,12 +155,14 @@ Status RepresentationTable::read_definitions(const File& file) {
         const RepresentationId representation = find(used);
         if (!representation.valid()) return unexpected(file, instance, "a representation", used);
         representations[representation.value].is_shape = true;
-        const InstanceIndex subject = defined(file, definition);
+        const auto [subject, by_aspect] = defined(file, definition);
         if (!subject.valid()) continue;
         if (file.is(subject, "NEXT_ASSEMBLY_USAGE_OCCURRENCE"))
             representations[representation.value].usage = subject;
         if (!keyword(file, subject).starts_with("PRODUCT_DEFINITION")) continue;
-        representations[representation.value].product = subject;
+        Representation& r = representations[representation.value];
+        r.is_of_aspect = by_aspect && (!r.product.valid() || r.is_of_aspect);
+        r.product = subject;
         const auto [first, is_new] = by_product_.emplace(subject.value, representation);
         if (!is_new) unite(first->second, representation);
     }

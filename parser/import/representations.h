@@ -25,6 +25,8 @@ struct Representation {
     InstanceIndex product;                  // PRODUCT_DEFINITION; not valid(): none
     InstanceIndex usage;    // NEXT_ASSEMBLY_USAGE_OCCURRENCE whose shape it is; likewise
     bool is_shape = false;  // and not a presentation
+    bool is_of_aspect =
+        false;  // of a feature of the product's shape (a hole, say), or of a part of it
 };
 
 // REPRESENTATION_RELATIONSHIP in its forms.

@@ -9,6 +9,7 @@
 #include <unordered_set>
 
 #include "kernel/geometry/tolerance.h"
+#include "parser/import/group_items.h"
 #include "parser/import/placement.h"
 #include "parser/import/representations.h"
 #include "parser/import/solids.h"
@@ -192,61 +193,14 @@ private:
         }
     }
 
-    // Each solid belongs to the groups of products that list it; to others only if no product does.
     void add_items() {
-        const std::size_t count = table_.representations.size();
-        for (std::size_t i = 0; i < count; ++i) {
-            Group& g = group(RepresentationId(i));
-            if (!g.product.valid()) g.product = table_.representations[i].product;
+        std::vector<GroupItems> items = group_items(file_, table_, diagnostics_);
+        for (std::size_t i = 0; i < groups_.size(); ++i) {
+            groups_[i].product = items[i].product;
+            groups_[i].items = std::move(items[i].items);
         }
-        std::unordered_set<std::uint32_t> of_products, of_shapes;
-        for (std::size_t i = 0; i < count; ++i) {
-            const Representation& r = table_.representations[i];
-            for (const InstanceIndex item : r.items) {
-                listed_.insert(item.value);
-                if (group(RepresentationId(i)).product.valid()) of_products.insert(item.value);
-                if (r.is_shape) of_shapes.insert(item.value);
-            }
-        }
-        std::unordered_set<std::uint64_t> known;
-        for (std::size_t i = 0; i < count; ++i) {
-            const Representation& r = table_.representations[i];
-            const RepresentationId first = table_.united(RepresentationId(i));
-            Group& g = groups_[first.value];
-            for (const InstanceIndex item : r.items) {
-                if (kind_of(file_, item) == ItemKind::mapped) continue;
-                const bool elsewhere = (!g.product.valid() && of_products.contains(item.value)) ||
-                                       (!r.is_shape && of_shapes.contains(item.value));
-                if (elsewhere ||
-                    !known.insert(std::uint64_t{first.value} << 32 | item.value).second)
-                    continue;
-                g.items.emplace_back(item, RepresentationId(i));
-            }
-        }
-        leave_out_approximations();
-    }
-
-    // Triangles beside an exact shape of the same product, or of a file without products, are that shape once more.
-    void leave_out_approximations() {
-        const auto is_exact = [&](const auto& item) {
-            const ItemKind kind = kind_of(file_, item.first);
-            return kind == ItemKind::solid || kind == ItemKind::surface_model;
-        };
-        const auto has_exact = [&](const Group& g) {
-            return std::any_of(g.items.begin(), g.items.end(), is_exact);
-        };
-        const bool any_exact = std::any_of(groups_.begin(), groups_.end(), has_exact);
-        for (Group& g : groups_) {
-            if (!has_exact(g) && (g.product.valid() || !any_exact)) continue;
-            std::erase_if(g.items, [&](const auto& item) {
-                if (kind_of(file_, item.first) != ItemKind::tessellated) return false;
-                diagnostics_.push_back(
-                    warning(file_, item.first,
-                            named(file_, item.first) +
-                                " is made of triangles; the exact shape beside it is taken",
-                            ExitStatus::unsupported));
-                return true;
-            });
+        for (const Representation& r : table_.representations) {
+            for (const InstanceIndex item : r.items) listed_.insert(item.value);
         }
     }
 

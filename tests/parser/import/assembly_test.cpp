@@ -274,6 +274,35 @@ TEST_CASE("2: a named body of a part is the part's, and moves with it") {
     CHECK(spans(box_of(model), {10, 0, 0}, {11, 2, 3}));
 }
 
+TEST_CASE("2: the volume of a hole, as the shape of a feature, is no solid") {
+    for (const std::string aspect_type : {"SHAPE_ASPECT('hole','',",
+                                          "(CHARACTERIZED_OBJECT('','')ROUND_HOLE()"
+                                          "SHAPE_ASPECT('hole','',"}) {
+        StepText step;
+        const int context = step.millimetres();
+        const bool is_complex = aspect_type.front() == '(';
+        const int feature = step.box({0, 0, 0}, {1, 2, 3});
+        const int body = step.box({0, 0, 0}, {9, 9, 9});
+        const int property = step.reserve();
+        const int aspect =
+            step.add(aspect_type + StepText::ref(property) + (is_complex ? ",.T.))" : ",.T.)"));
+        const int of_aspect =
+            step.add("PRODUCT_DEFINITION_SHAPE('',''," + StepText::ref(aspect) + ")");
+        const int of_feature =
+            step.representation({feature, body}, context, "SHAPE_REPRESENTATION");
+        step.add("SHAPE_DEFINITION_REPRESENTATION(" + StepText::ref(of_aspect) + "," +
+                 StepText::ref(of_feature) + ")");
+        const int definition = step.product("block", step.representation({body}, context));
+        step.define(property, "PRODUCT_DEFINITION_SHAPE('',''," + StepText::ref(definition) + ")");
+        const Imported result = imported(step);
+        REQUIRE(result.model.solids.size() == 1);
+        CHECK(spans(box_of(result.model), {0, 0, 0}, {9, 9, 9}));
+        REQUIRE(result.diagnostics.size() == 1);
+        CHECK(result.diagnostics[0].severity == Severity::note);
+        CHECK(mentions(result.diagnostics[0], "is the shape of a feature"));
+    }
+}
+
 TEST_CASE("2: an occurrence without a placement stays where it is, with a warning") {
     StepText step;
     const int context = step.millimetres();
