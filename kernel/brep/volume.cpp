@@ -13,6 +13,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "kernel/brep/freeform_integrals.h"
 #include "kernel/geometry/angle.h"
 
 namespace lyr {
@@ -278,6 +279,9 @@ TorusIntegrals tube_integrals(const Torus& torus, const FaceNodes& face, double 
 
 // Three times the face's part of the volume.
 double flux(const Model& model, const Face& face, const Point3& c) {
+    if (std::holds_alternative<SharedBSplineSurface>(face.surface)) {
+        return freeform_integrals(model, face, c).flux_mm3;
+    }
     const FaceNodes nodes = nodes_of(model, face);
     const double sense = face.same_sense ? 1 : -1;
     const Vector3 outward = vector_area(nodes, c);
@@ -305,7 +309,7 @@ double flux(const Model& model, const Face& face, const Point3& c) {
             return (s.frame.origin - c).dot(outward) +
                    sense * (s.minor_mm * integrals.area + s.major_mm * integrals.cosine);
         }
-        double operator()(const SharedBSplineSurface&) const { return 0; }
+        double operator()(const SharedBSplineSurface&) const { return 0; }  // see above
     };
     return std::visit(Visitor{nodes, sense, outward, c}, face.surface);
 }
@@ -345,6 +349,9 @@ double signed_volume_mm3(const Model& model, ShellId id) {
 
 double signed_area_mm2(const Model& model, FaceId id) {
     const Face& face = model[id];
+    if (std::holds_alternative<SharedBSplineSurface>(face.surface)) {
+        return freeform_integrals(model, face, Point3::Zero()).area_mm2;
+    }
     struct Visitor {
         FaceNodes nodes;
         double sense;
@@ -353,7 +360,7 @@ double signed_area_mm2(const Model& model, FaceId id) {
         double operator()(const Cone& s) const { return cone_area(s, nodes, sense); }
         double operator()(const Sphere& s) const { return sphere_area(s, nodes, sense); }
         double operator()(const Torus& s) const { return tube_integrals(s, nodes, sense).area; }
-        double operator()(const SharedBSplineSurface&) const { return 0; }
+        double operator()(const SharedBSplineSurface&) const { return 0; }  // see above
     };
     return std::visit(Visitor{nodes_of(model, face), face.same_sense ? 1.0 : -1.0}, face.surface);
 }

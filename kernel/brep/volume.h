@@ -1,17 +1,19 @@
 // The volume that a shell encloses, signed: which side of its faces is the material.
 //
 // By the divergence theorem, the volume is a third of the integral of (p - c) . n over the faces. On each elementary
-// surface that comes down to line integrals along the face's loops, so no face is ever divided up.
+// surface that comes down to line integrals along the face's loops, so no face is ever divided up; on B-spline surfaces
+// see freeform_integrals.h.
 //
 // Contract
 //  1. signed_volume_mm3(m, s) of a closed shell whose faces look away from the enclosed space is its volume; where
 //     they look into it, minus that. For edges that lie on their surfaces the error is below volume_accuracy times
-//     the volume of the shell and of the balls and rings whose surfaces it uses.
+//     the volume of the shell and of the balls and rings whose surfaces it uses, with B-spline faces below
+//     freeform_accuracy times that.
 //  2. It does not change, beyond round-off, when the model is moved; a mirroring keeps it too.
 //  3. Of a shell that does not close it says nothing.
 //  4. signed_area_mm2(m, f) is the face's area, negative where its loops run clockwise about its outward normal, that
-//     is, where same_sense and loops contradict each other. On spheres and tori there is no telling, for the
-//     boundary of a region is that of the rest as well: there it is positive.
+//     is, where same_sense and loops contradict each other. On spheres, tori and B-spline surfaces that close like
+//     them there is no telling, for the boundary of a region is that of the rest as well: there it is positive.
 //  5. reverse_shell() turns a shell's faces around, loops included: the volume changes its sign.
 
 #pragma once
