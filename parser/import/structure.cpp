@@ -310,17 +310,29 @@ private:
         Fields fields(file_, r.transformation, 4);
         InstanceIndex of_first = fields.reference(2), of_second = fields.reference(3);
         if (!fields.ok()) return fields.error();
-        // Some writers exchange the two; each is an item of the representation that it belongs to. Others, which name the
-        // assembly first, have the items in the right order but list them with the wrong representation.
+        // Some writers exchange the two; each is an item of the representation that it belongs to.
         const auto lists = [&](RepresentationId id, InstanceIndex item) {
             const auto& placements = table_[id].placements;
             return std::find(placements.begin(), placements.end(), item) != placements.end();
         };
         const bool exchanged = lists(r.second, of_first) && !lists(r.first, of_first) &&
                                lists(r.first, of_second) && !lists(r.second, of_second);
-        if (exchanged && link.child_is_first) std::swap(of_first, of_second);
+        if (exchanged && !places_by_first(link, of_first, of_second)) {
+            std::swap(of_first, of_second);
+        }
         return between(link, link.child_is_first ? of_first : of_second, r.transformation,
                        link.child_is_first ? of_second : of_first, r.transformation);
+    }
+
+    // Other writers name the assembly first, with the part's place in it as the first item, but list this place with
+    // the part and the assembly's own origin with the assembly.
+    bool places_by_first(const Link& link, InstanceIndex of_first, InstanceIndex of_second) {
+        if (link.child_is_first) return false;
+        const auto is_origin = [&](InstanceIndex item) {
+            const auto place = read_transform(file_, link.relationship->instance, item, Units{});
+            return place && same_place(*place, Eigen::Affine3d::Identity());
+        };
+        return !is_origin(of_first) && is_origin(of_second);
     }
 
     void emit(RepresentationId id, const Eigen::Affine3d& placement) {

@@ -76,6 +76,19 @@ TEST_CASE("2: an occurrence is placed the same whichever way its relationship is
     }
 }
 
+TEST_CASE("2: a place in the assembly that is listed with the part (trj4_s1-ai-214)") {
+    StepText step;
+    const int context = step.millimetres();
+    const int place = step.placement({10, 0, 0}, z_axis, y_axis);
+    const int representation =
+        step.representation({place, step.box({0, 0, 0}, {1, 2, 3})}, context);
+    const int part = step.product("block", representation);
+    const Component whole = assembly(step, "whole", context, {});
+    step.occurrence(whole.definition, part, whole.representation, representation, place,
+                    whole.origin);
+    CHECK(spans(box_of(imported(step).model), {8, 0, 0}, {10, 1, 3}));
+}
+
 TEST_CASE("2: the component's own placement counts, not only the target") {
     StepText step;
     const int context = step.millimetres();
