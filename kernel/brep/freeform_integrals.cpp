@@ -227,7 +227,10 @@ private:
         for (const ParameterCorner& corner : loop.corners) {
             if ((corner.point - pole).norm() > closeness_mm_) continue;
             const Point2 from = loop.nodes[(corner.next_node + count - 1) % count].uv;
-            const Point2 to = followed(loop.nodes[corner.next_node % count].uv, from, period_);
+            // Half a turn is as near one way as the other: only where the loop begins is it not decided yet.
+            const bool decided = corner.next_node % count != 0;
+            const Point2 next = loop.nodes[corner.next_node % count].uv;
+            const Point2 to = decided ? next : followed(next, from, period_);
             const double width = (to.x() - from.x()) / fewest_panels;
             for (int panel = 0; panel < fewest_panels; ++panel) {
                 for (std::size_t g = 0; g < gauss_at.size(); ++g) {
