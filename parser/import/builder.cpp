@@ -158,6 +158,35 @@ void Builder::orient_last_shell(const ShellRecord& record, bool is_void, bool is
     if (is_stated) add_note(record.shell, "it is stated inside out and has been turned around");
 }
 
+void Builder::settle_outer_shell() {
+    const Solid& solid = model_.solids.back();
+    const ShellId first(std::size_t{solid.first_shell});
+    ShellId outer = first;
+    double most_mm3 = 0;
+    for (std::uint32_t s = 0; s < solid.shell_count; ++s) {
+        const ShellId shell(std::size_t{solid.first_shell + s});
+        const double volume_mm3 = std::abs(signed_volume_mm3(model_, shell));
+        if (volume_mm3 <= most_mm3) continue;
+        most_mm3 = volume_mm3;
+        outer = shell;
+    }
+    if (outer == first) return;
+    for (const ShellId shell : {first, outer}) reverse_shell(model_, shell);
+    std::swap(model_.shells[first.value], model_.shells[outer.value]);
+    for (const ShellId shell : {first, outer}) {
+        const Shell& faces = model_[shell];
+        for (std::uint32_t f = 0; f < faces.face_count; ++f) {
+            model_.faces[faces.first_face + f].shell = shell;
+        }
+    }
+    Diagnostic note{Severity::note,
+                    ExitStatus::geometry,
+                    "the solid's outer shell is smaller than its void #" +
+                        std::to_string(model_[first].source) + ": they have been exchanged",
+                    {.entity = solid.source}};
+    diagnostics_.push_back(std::move(note));
+}
+
 void Builder::add_note(InstanceIndex instance, const std::string& message) {
     Diagnostic note = file_.error(instance, named(file_, instance) + ": " + message);
     note.severity = Severity::note;

@@ -32,6 +32,10 @@ public:
     // surface model does not say (not `is_stated`: turning it is nothing to tell).
     void orient_last_shell(const ShellRecord& record, bool is_void, bool is_stated);
 
+    // Of the last solid's shells, all of them oriented as the file states their parts, the one that holds the others is
+    // the outer one.
+    void settle_outer_shell();
+
     Model take() { return std::move(model_); }
 
 private:

@@ -47,6 +47,7 @@ Result<Part> read_solid(const File& file, InstanceIndex item, const Units& units
         if (const Status status = builder.add_shell(*record); !status) return status.error();
         builder.orient_last_shell(*record, shell != shells->shells.front(), true);
     }
+    if (shells->shells.size() > 1) builder.settle_outer_shell();
     return Part{builder.take(), {}};
 }
 

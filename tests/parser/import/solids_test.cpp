@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "checks.h"
@@ -34,6 +35,28 @@ TEST_CASE("1, 3: a box, whatever way the flags state it") {
         CHECK(result.diagnostics.empty());
         check_box(result.model, {1, 2, 3}, {4, 6, 8});
         CHECK(result.model.solids.at(0).name == "box");
+    }
+}
+
+TEST_CASE("a void that is larger than the outer shell is the outer shell (trj8_k1-ac-203)") {
+    for (const bool exchanged : {false, true}) {
+        CAPTURE(exchanged);
+        StepText step;
+        const int large = step.box_shell({0, 0, 0}, {10, 10, 10}, {});
+        const int small = step.box_shell({2, 2, 2}, {5, 6, 7}, {});
+        const int inner = step.add("ORIENTED_CLOSED_SHELL('',*," +
+                                   StepText::ref(exchanged ? large : small) + ",.F.)");
+        const int solid =
+            step.add("BREP_WITH_VOIDS('hollow'," + StepText::ref(exchanged ? small : large) + ",(" +
+                     StepText::ref(inner) + "))");
+        step.representation({solid}, step.millimetres());
+        const Imported result = imported(step);
+        check_model(result.model);
+        CHECK(plane_volume(result.model) == doctest::Approx(1000 - 3 * 4 * 5));
+        const auto told = [](const Diagnostic& d) {
+            return d.message.find("exchanged") != std::string::npos;
+        };
+        CHECK(std::any_of(result.diagnostics.begin(), result.diagnostics.end(), told) == exchanged);
     }
 }
 
