@@ -14,15 +14,17 @@ namespace {
 
 constexpr double full_turn_rad = 2 * std::numbers::pi;
 
-// Steps that cut an edge into outline points: 48 a turn of a circle keeps them an eighth of a turn
-// apart six times over; a B-spline gets as many between neighbouring control points' worth of bending.
+// Steps that cut an edge into outline points: 48 a turn of a circle keeps them an eighth of a turn apart six times
+// over. A B-spline gets as many for each bend that its control points can make; long ones bend less between two.
 constexpr int steps_per_turn = 48;
-constexpr int steps_per_control_point = 8;
+constexpr int steps_per_control_point = 8, fully_stepped_points = 16;
 
 int outline_steps(const Edge& edge) {
     if (std::holds_alternative<Line>(edge.curve)) return 1;
     if (const auto* spline = std::get_if<BSplineCurve>(&edge.curve)) {
-        return steps_per_control_point * static_cast<int>(spline->control_points.size());
+        const int points = static_cast<int>(spline->control_points.size());
+        const int full = std::min(points, fully_stepped_points);
+        return steps_per_control_point * full + points - full;
     }
     return steps_per_turn;
 }
@@ -127,17 +129,21 @@ bool is_left_of(const Vector3& pole, const Outline& outline, double sense) {
 constexpr double ray_offset_rad = 1e-12;
 
 double short_way(double difference, double period) {
-    const bool short_already = 2 * std::abs(difference) <= period;
-    return period > 0 && !short_already ? std::remainder(difference, period) : difference;
+    return period > 0 ? difference - period * std::round(difference / period) : difference;
 }
 
 std::vector<Point2> parameters_along(const Surface& surface, const std::vector<Point3>& points) {
     const auto* spline = std::get_if<SharedBSplineSurface>(&surface);
     std::vector<Point2> result;
     for (const Point3& point : points) {
-        // Searched for once; from there on, neighbours are near.
-        result.push_back(spline && !result.empty() ? invert_near(**spline, point, result.back())
-                                                   : invert(surface, point));
+        const std::size_t n = result.size();
+        // Searched for once; from there on, points follow each other evenly, but for the corners.
+        if (!spline || n == 0) {
+            result.push_back(invert(surface, point));
+        } else {
+            const Point2 guess = n > 1 ? Point2(2 * result[n - 1] - result[n - 2]) : result[n - 1];
+            result.push_back(invert_near(**spline, point, guess));
+        }
     }
     return result;
 }
@@ -198,7 +204,8 @@ bool Containment::holds(const Point3& point, double z_mm) const {
     if (std::holds_alternative<Sphere>(surface_)) return on_sphere(z_mm);
     if (std::holds_alternative<Plane>(surface_)) return false;
     const auto* torus = std::get_if<Torus>(&surface_);
-    return torus && is_spindle(*torus) ? on_spindle(point) : in_parameters(point);
+    return torus && is_spindle(*torus) ? on_spindle(point)
+                                       : holds_parameters(invert(surface_, point));
 }
 
 bool Containment::holds_apex() const {
@@ -247,8 +254,8 @@ double Containment::sense_of_parameters() const {
     return std::get<SharedBSplineSurface>(surface_)->mirrored ? -sense : sense;
 }
 
-bool Containment::in_parameters(const Point3& point) const {
-    const Point2 at = invert(surface_, point) + Point2::Constant(ray_offset_rad);
+bool Containment::holds_parameters(const Point2& uv) const {
+    const Point2 at = uv + Point2::Constant(ray_offset_rad);
     const double sense = sense_of_parameters();
     // fixed 0: along v at constant u; fixed 1: along u at constant v.
     for (const int fixed : {0, 1}) {

@@ -44,6 +44,9 @@ public:
     // `point` is on the component, whose plane is at z: outlines at that level are below it.
     bool holds(const Point3& point, double z_mm) const;
 
+    // The same of a torus or B-spline surface, for a point of the component given by its parameters.
+    bool holds_parameters(const Point2& uv) const;
+
     // Whether the face of a cone reaches its apex.
     bool holds_apex() const;
 
@@ -52,7 +55,6 @@ private:
     bool on_cone(const Cone& cone, double z_mm) const;
     bool on_sphere(double z_mm) const;
     bool on_spindle(const Point3& point) const;
-    bool in_parameters(const Point3& point) const;
     double sense_of_parameters() const;
     Outline prepared(const std::vector<Point3>& points, double height_mm) const;
 

@@ -340,13 +340,21 @@ void Cutter::add_spans(FaceId id, const SurfaceSection& section, const FaceSpans
           .z_mm = work.z_mm}});
 }
 
+bool Cutter::holds(FaceId face, const SurfaceSection& section, int component, double z_mm) const {
+    if (const auto* freeform = std::get_if<FreeformSection>(&section)) {
+        const auto c = static_cast<std::size_t>(component);
+        return containment(face).holds_parameters(freeform->curves[c].uv);
+    }
+    const Point2 on = at(section, {component, 0}).point;
+    return containment(face).holds({on.x(), on.y(), z_mm}, z_mm);
+}
+
 void Cutter::add_whole_components(FaceId id, const SurfaceSection& section,
                                   const std::vector<bool>& crossed, Work& work) const {
     for (int component = 0; component < component_count(section); ++component) {
         const bool is_crossed = !crossed.empty() && crossed[static_cast<std::size_t>(component)];
         if (is_crossed || period(section, component) == 0) continue;
-        const Point2 on = at(section, {component, 0}).point;
-        if (!containment(id).holds({on.x(), on.y(), work.z_mm}, work.z_mm)) continue;
+        if (!holds(id, section, component, work.z_mm)) continue;
         work.whole_contours.emplace_back(solid_of(id),
                                          whole_component(section, component, tolerance_));
     }

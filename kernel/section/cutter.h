@@ -89,6 +89,7 @@ private:
     void add_whole_components(FaceId face, const SurfaceSection& section,
                               const std::vector<bool>& crossed, Work& work) const;
     const Containment& containment(FaceId face) const;
+    bool holds(FaceId face, const SurfaceSection& section, int component, double z_mm) const;
     void stitch(Work& work) const;
     void check_areas(Work& work) const;
     void report(Work& work, std::string message, SourceId source, const Point3& point) const;

@@ -60,8 +60,7 @@ HeightRange FreeformFace::heights_of_face() const {
         const bool beyond =
             (z > range.top_mm && !has_higher[v]) || (z < range.bottom_mm && !has_lower[v]);
         if (!beyond || !used[v]) continue;
-        const Point3 point = evaluate(*mesh().surface, vertices[v].uv);
-        if (!containment().holds(point, z)) continue;
+        if (!containment().holds_parameters(vertices[v].uv)) continue;
         range = {std::min(range.bottom_mm, z), std::max(range.top_mm, z)};
     }
     return range;

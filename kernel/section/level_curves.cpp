@@ -135,7 +135,7 @@ std::vector<LevelCurve> Tracker::follow() {
 }
 
 LevelCurve Tracker::follow_from(std::uint32_t first_curve) {
-    LevelCurve result{{}, {}, false};
+    LevelCurve result{{}, {}, false, cell_curves_[first_curve].start.uv};
     std::uint32_t next = first_curve;
     while (next != none && !followed_[next]) {
         followed_[next] = true;
@@ -272,8 +272,12 @@ CurvePoint between(const CurvePoint& start, const CurvePoint& end, double share)
 
 double sagitta_mm(const CurvePoint& start, const CurvePoint& end) {
     const Vector2 chord = end.point - start.point;
-    return chord.norm() / 8 *
-           (angle_between(start.tangent, chord) + angle_between(chord, end.tangent));
+    const double length = chord.norm();
+    // Twice the tangent of half the angle is the angle and a little more.
+    const auto angle = [&](const Vector2& tangent) {
+        return 2 * std::abs(cross(tangent, chord)) / (length + tangent.dot(chord));
+    };
+    return length > 0 ? length / 8 * (angle(start.tangent) + angle(end.tangent)) : 0;
 }
 
 std::vector<LevelCurve> level_curves(const HeightMesh& mesh, double z_mm, bool forward,

@@ -22,6 +22,7 @@ struct LevelCurve {
     std::vector<CurvePoint> points;
     std::vector<double> key;
     bool closed;
+    Point2 uv;  // of one of its points
 
     double length_mm() const { return key.back(); }
 };
