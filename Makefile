@@ -3,15 +3,18 @@
 # make test       builds and runs every test
 # make sanitize   the same tests under the address and undefined-behaviour sanitizers, into build-sanitize/
 # make board      only what a printer's board needs (lyrrun, lyrview), into build-board/
+# make bench      speed beside OpenCASCADE's, into build-bench/ (needs: tools/setup --bench); LYR_BENCH_FILES=folder
+#                 of STEP files to read
 # make install    into PREFIX (default /usr/local)
 # make clean      removes what the others made
 
 BUILD  ?= build
 PREFIX ?= /usr/local
 JOBS   ?= $(shell nproc)
+LYR_BENCH_FILES ?= fixtures/parts
 CTEST   = ctest --output-on-failure -j $(JOBS)
 
-.PHONY: all setup demo test sanitize board install clean
+.PHONY: all setup demo test sanitize board bench install clean
 
 all: setup
 	cmake -S . -B $(BUILD) -DCMAKE_BUILD_TYPE=Release
@@ -41,8 +44,13 @@ board: setup
 	  -DCMAKE_DISABLE_FIND_PACKAGE_Eigen3=ON
 	cmake --build build-board -j $(JOBS)
 
+bench: setup
+	cmake -S . -B build-bench -DCMAKE_BUILD_TYPE=Release -DLYR_BENCH=ON -DLYR_TESTS=OFF
+	cmake --build build-bench -j $(JOBS) --target bench_compare
+	build-bench/bench_compare --files "$(LYR_BENCH_FILES)"
+
 install: all
 	cmake --install $(BUILD) --prefix $(PREFIX)
 
 clean:
-	rm -rf build build-sanitize build-board demo
+	rm -rf build build-sanitize build-board build-bench demo
