@@ -46,7 +46,8 @@ board: setup
 
 bench: setup
 	cmake -S . -B build-bench -DCMAKE_BUILD_TYPE=Release -DLYR_BENCH=ON -DLYR_TESTS=OFF
-	cmake --build build-bench -j $(JOBS) --target bench_compare
+	cmake --build build-bench -j $(JOBS) --target bench_micro bench_compare
+	build-bench/bench_micro
 	build-bench/bench_compare --files "$(LYR_BENCH_FILES)"
 
 install: all
