@@ -60,12 +60,26 @@ double enclosed_area_mm2(const Point2& start, const Segment& segment) {
     return radius * radius * x_minus_sin(sweep) / 2;
 }
 
+namespace {
+
+// The chord turned by half the sweep, whose quarter has the tangent 2 s / c; `turn` +1: to the left.
+Vector2 end_direction(const Point2& start, const Segment& segment, double turn) {
+    const Vector2 chord = segment.end - start;
+    const double length = chord.norm();
+    if (length == 0) return Vector2::Zero();
+    const double t = turn * 2 * segment.sagitta_mm / length;
+    const double scale = 1 / (length * (1 + t * t));
+    return scale * ((1 - t * t) * chord + 2 * t * left_of(chord));
+}
+
+}  // namespace
+
 Vector2 start_tangent(const Point2& start, const Segment& segment) {
-    return rotated((segment.end - start).normalized(), -sweep_rad(start, segment) / 2);
+    return end_direction(start, segment, -1);
 }
 
 Vector2 end_tangent(const Point2& start, const Segment& segment) {
-    return rotated((segment.end - start).normalized(), sweep_rad(start, segment) / 2);
+    return end_direction(start, segment, 1);
 }
 
 Point2 point_at(const Point2& start, const Segment& segment, double fraction) {
