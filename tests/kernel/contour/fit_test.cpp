@@ -1,9 +1,9 @@
+#include "kernel/contour/fit.h"
+
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <numbers>
-
-#include "kernel/contour/fit.h"
 
 using namespace lyr;
 
@@ -118,6 +118,49 @@ TEST_CASE("fit: a span of a few bits of the parameter ends") {
             REQUIRE(!arcs.empty());
             CHECK(arcs.size() < 200);
             CHECK((arcs.back().end - end).norm() == 0);
+        }
+    }
+}
+
+namespace {
+
+// How many arcs any spline of arcs needs for a quarter of an ellipse, tangent-continuous or not. Where the curvature
+// changes by k' a length, a circle over the length l stays k' l^3 / 192 off at best: the Chebyshev cubic.
+double least_arcs(double a, double b, double allowed_mm) {
+    const auto speed = [&](double t) { return std::hypot(a * std::sin(t), b * std::cos(t)); };
+    const auto curvature = [&](double t) { return a * b / std::pow(speed(t), 3); };
+    constexpr int steps = 100000;
+    const double h = pi / 2 / steps;
+    double sum = 0;
+    for (int i = 0; i < steps; ++i) {
+        const double t = (i + 0.5) * h;
+        const double change = (curvature(t + h / 2) - curvature(t - h / 2)) / (h * speed(t));
+        sum += std::cbrt(std::abs(change) / (192 * allowed_mm)) * speed(t) * h;
+    }
+    return sum;
+}
+
+}  // namespace
+
+TEST_CASE("fit 3: at most twice as many arcs as the least that any arcs could do with") {
+    for (const auto& [a, b] :
+         {std::pair(40.0, 15.0), std::pair(100.0, 80.0), std::pair(5.0, 4.0)}) {
+        for (const double allowed_mm : {0.0025, 0.00025}) {
+            CAPTURE(a);
+            CAPTURE(allowed_mm);
+            const PlaneCurve curve = ellipse(a, b);
+            const double least = least_arcs(a, b, allowed_mm);
+            std::vector<Segment> direct, through_points;
+            fit_arcs(curve, 0, pi / 2, curve(0).point, curve(pi / 2).point, allowed_mm, direct);
+            std::vector<CurvePoint> points;
+            for (int i = 0; i <= 4000; ++i) points.push_back(curve(pi / 2 * i / 4000));
+            fit_arcs(points, allowed_mm, through_points);
+            MESSAGE("arcs: " << direct.size() << ", through points " << through_points.size()
+                             << ", at least " << least);
+            // One biarc more where the last does not come out even.
+            CHECK(static_cast<double>(direct.size()) <= 2 * least + 2);
+            CHECK(static_cast<double>(through_points.size()) <= 2 * least + 2);
+            CHECK(static_cast<double>(direct.size()) >= least);
         }
     }
 }
