@@ -31,7 +31,7 @@ constexpr std::array<double, 5> gauss_weight{0.11846344252809454, 0.239314335249
 
 // How many panels of five points an edge needs.
 int panels(const Edge& edge) {
-    constexpr double widest_panel_rad = pi / 8;
+    constexpr double widest_panel_rad = pi / 6;
     if (std::holds_alternative<Line>(edge.curve)) return 1;
     if (const auto* spline = std::get_if<BSplineCurve>(&edge.curve)) {
         return 2 * static_cast<int>(spline->control_points.size());
@@ -47,6 +47,17 @@ struct Node {
 
 using LoopNodes = std::vector<Node>;
 
+// A node's point and, times `weight`, the curve's derivative. Along a circle the one is the other, turned.
+Node node_at(const Curve& curve, double t, double weight) {
+    const Point3 point = evaluate(curve, t);
+    if (const auto* circle = std::get_if<Circle>(&curve)) {
+        const Vector3 turned =
+            circle->frame.x.cross(circle->frame.y).cross(point - circle->frame.origin);
+        return {point, weight * turned};
+    }
+    return {point, weight * derivative(curve, t)};
+}
+
 LoopNodes nodes_of(const Model& model, const Loop& loop) {
     LoopNodes nodes;
     for (std::uint32_t c = loop.first_coedge; c < loop.first_coedge + loop.coedge_count; ++c) {
@@ -56,12 +67,12 @@ LoopNodes nodes_of(const Model& model, const Loop& loop) {
         const double to = use.reversed ? edge.t_start : edge.t_end;
         const int count = panels(edge);
         const double width = (to - from) / count;
+        nodes.reserve(nodes.size() + 1 + gauss_at.size() * static_cast<std::size_t>(count));
         nodes.push_back({evaluate(edge.curve, from), Vector3::Zero()});
         for (int panel = 0; panel < count; ++panel) {
             for (std::size_t i = 0; i < gauss_at.size(); ++i) {
                 const double t = from + (panel + gauss_at[i]) * width;
-                nodes.push_back(
-                    {evaluate(edge.curve, t), gauss_weight[i] * width * derivative(edge.curve, t)});
+                nodes.push_back(node_at(edge.curve, t, gauss_weight[i] * width));
             }
         }
     }

@@ -22,7 +22,7 @@
 
 namespace lyr {
 
-// Five Gauss points on each eighth of a half turn, of integrands that vary over a turn or so.
+// Five Gauss points on each twelfth of a turn, of integrands that vary over a turn or so.
 inline constexpr double volume_accuracy = 1e-9;
 
 double signed_volume_mm3(const Model& model, ShellId shell);
