@@ -95,6 +95,8 @@ void add_options(CLI::App& app, Arguments& arguments) {
                "Bed temperature, 0: off");
     add_flag(app, "--allow-open", options.allow_open,
              "Leave out contours that do not close instead of stopping");
+    add_flag(app, "--strict", options.strict,
+             "Refuse a part with geometric defects (gaps, wrong directions) instead of healing it");
     add_count(app, "--threads", "N  [0]", options.threads, {0, 1024},
               "0: one a processor; the result is the same for any number");
 }

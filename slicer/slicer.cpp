@@ -1,4 +1,4 @@
-// Reading a model: Part 21 text, entities, topology, build direction.
+// Reading a model: Part 21 text, entities, topology, repairs, build direction.
 
 #include "slicer/slicer.h"
 
@@ -6,9 +6,9 @@
 
 #include "base/read_text.h"
 #include "kernel/brep/placement.h"
-#include "kernel/brep/validity.h"
 #include "parser/import/import.h"
 #include "parser/part21/part21.h"
+#include "slicer/mend.h"
 
 namespace lyr::slicer {
 namespace {
@@ -20,18 +20,24 @@ Result<part21::File> open(const std::string& path) {
     return part21::File::parse(standard_input_name, std::move(*text));
 }
 
+// The kernel knows instances only.
+Diagnostic in_file(Diagnostic diagnostic, const part21::File& file) {
+    if (diagnostic.where.file.empty()) diagnostic.where.file = file.name();
+    return diagnostic;
+}
+
 }  // namespace
 
 Result<Model> load(const std::string& step_path, const Options& options, Diagnostics& diagnostics) {
     auto file = open(step_path);
     if (!file) return file.error();
     diagnostics.insert(diagnostics.end(), file->diagnostics().begin(), file->diagnostics().end());
-    auto model = importer::import_model(*file, diagnostics);
+    Diagnostics found;
+    auto model = importer::import_model(*file, found);
+    const Status mended = model ? mend(*model, options, found) : Status(Done{});
+    for (Diagnostic& diagnostic : found) diagnostics.push_back(in_file(diagnostic, *file));
     if (!model) return model.error();
-    for (Diagnostic& found : validate(*model)) {
-        found.where.file = file->name();
-        diagnostics.push_back(std::move(found));
-    }
+    if (!mended) return in_file(mended.error(), *file);
     return transformed(std::move(*model), turned_up(options.up));
 }
 

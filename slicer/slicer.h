@@ -12,6 +12,8 @@
 //     less than half a layer is left off, of more than half counts as a layer.
 //  4. On the bed means: lowest point at z = 0, the bounding box's lower left corner at `bed_position_mm`.
 //  5. A contour that does not close is an error, unless `allow_open`; then it is left out and reported.
+//  6. Surfaces that close, if need be after sewing, are solids. Those that do not are left out beside solids; alone they
+//     are an error (status geometry), unless `allow_open`.
 
 #pragma once
 
@@ -38,6 +40,7 @@ struct Options {
     double nozzle_temp_c = 210;
     double bed_temp_c = 60;
     bool allow_open = false;
+    bool strict = false;  // refuse a model with geometric defects instead of healing it
     unsigned threads = 0;  // 0: as many as there are processors
 };
 

@@ -8,12 +8,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "kernel/brep/parameter_loops.h"
 #include "kernel/brep/quadrature.h"
-#include "kernel/geometry/tolerance.h"
 
 namespace lyr {
 
@@ -175,28 +175,15 @@ BSplineSurface transposed(const BSplineSurface& s) {
     return t;
 }
 
-// Whether the first or the last line of control points along u is one point.
-bool is_pole(const BSplineSurface& s, bool at_end) {
-    const std::size_t j = at_end ? s.count_v - 1 : 0;
-    for (std::size_t i = 1; i < s.count_u; ++i) {
-        if ((s.control_points[i * s.count_v + j] - s.control_points[j]).norm() > resolution_mm) {
-            return false;
-        }
-    }
-    return true;
-}
-
 class FaceIntegral {
 public:
-    FaceIntegral(const BSplineSurface& surface, std::vector<ParameterLoop> loops, const Point3& c,
-                 double closeness_mm)
+    FaceIntegral(const BSplineSurface& surface, std::vector<ParameterLoop> loops, const Point3& c)
         : s_(surface),
           loops_(std::move(loops)),
           columns_(s_, c),
           period_(periods_of(s_)),
-          pole_at_start_(is_pole(s_, false)),
-          pole_at_end_(is_pole(s_, true)),
-          closeness_mm_(closeness_mm) {}
+          pole_at_start_(pole_of(s_, true, false)),
+          pole_at_end_(pole_of(s_, true, true)) {}
 
     // With loops as they are about a normal along d/du x d/dv (+1) or against it (-1).
     FreeformIntegrals result(double sense) {
@@ -222,17 +209,15 @@ private:
 
     // At a pole a loop passes from one line of constant u to another without an edge.
     void add_jumps(const ParameterLoop& loop) {
-        const Point3 pole = evaluate(s_, {s_.start_u(), s_.end_v()});
-        const std::size_t count = loop.nodes.size();
-        for (const ParameterCorner& corner : loop.corners) {
-            if ((corner.point - pole).norm() > closeness_mm_) continue;
-            const Point2 from = loop.nodes[(corner.next_node + count - 1) % count].uv;
-            // Half a turn is as near one way as the other: only where the loop begins is it not decided yet.
-            const bool decided = corner.next_node % count != 0;
-            const Point2 next = loop.nodes[corner.next_node % count].uv;
-            const Point2 to = decided ? next : followed(next, from, period_);
-            const double width = (to.x() - from.x()) / fewest_panels;
-            for (int panel = 0; panel < fewest_panels; ++panel) {
+        for (const PolePassage& passage : loop.passages) {
+            if (passage.pole != *pole_at_end_) continue;
+            const bool is_first = passage.next_node % loop.nodes.size() == 0;
+            const Point2 from =
+                is_first ? loop.nodes.back().uv : loop.nodes[passage.next_node - 1].uv;
+            const Point2 to = is_first ? followed(loop.nodes.front().uv, from, period_)
+                                       : loop.nodes[passage.next_node].uv;
+            const double width = (to.x() - from.x()) / most_panels;
+            for (int panel = 0; panel < most_panels; ++panel) {
                 for (std::size_t g = 0; g < gauss_at.size(); ++g) {
                     add({from.x() + (panel + gauss_at[g]) * width, s_.end_v()},
                         gauss_weight[g] * width);
@@ -271,8 +256,7 @@ private:
     std::vector<ParameterLoop> loops_;
     Columns columns_;
     Vector2 period_;
-    bool pole_at_start_, pole_at_end_;
-    double closeness_mm_;
+    std::optional<Point3> pole_at_start_, pole_at_end_;
     Integrals sum_;
     double parameter_area_ = 0;
     int turns_ = 0;
@@ -292,11 +276,10 @@ bool winds_along_v(const BSplineSurface& s, const std::vector<ParameterLoop>& lo
 
 FreeformIntegrals freeform_integrals(const Model& model, const Face& face, const Point3& c) {
     const BSplineSurface& surface = *std::get<SharedBSplineSurface>(face.surface);
-    const double closeness_mm = std::max(model.uncertainty_mm, resolution_mm);
     const double sense = face.same_sense != surface.mirrored ? 1 : -1;
     std::vector<ParameterLoop> loops = parameter_loops(model, face);
     if (!winds_along_v(surface, loops)) {
-        return FaceIntegral(surface, std::move(loops), c, closeness_mm).result(sense);
+        return FaceIntegral(surface, std::move(loops), c).result(sense);
     }
     for (ParameterLoop& loop : loops) {
         for (ParameterNode& node : loop.nodes) {
@@ -305,7 +288,7 @@ FreeformIntegrals freeform_integrals(const Model& model, const Face& face, const
         }
     }
     const BSplineSurface across = transposed(surface);
-    return FaceIntegral(across, std::move(loops), c, closeness_mm).result(-sense);
+    return FaceIntegral(across, std::move(loops), c).result(-sense);
 }
 
 }  // namespace lyr

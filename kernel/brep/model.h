@@ -63,6 +63,7 @@ struct Shell {
     std::uint32_t first_face, face_count;
     SolidId solid;
     SourceId source = 0;
+    bool is_surface = false;  // not stated as the boundary of a solid: heal() finds what it bounds
 };
 
 struct Solid {

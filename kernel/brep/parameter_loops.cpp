@@ -7,7 +7,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "kernel/brep/free_edges.h"
 #include "kernel/brep/quadrature.h"
+#include "kernel/brep/surface_foot.h"
 #include "kernel/geometry/tolerance.h"
 
 namespace lyr {
@@ -26,48 +28,74 @@ std::vector<double> edge_borders(const Edge& edge) {
     return panel_borders(knots, from, to);
 }
 
-// What a step in space is in the parameters.
-Vector2 parameter_step(const Partials& at, const Vector3& step) {
-    const double uu = at.du.squaredNorm(), uv = at.du.dot(at.dv), vv = at.dv.squaredNorm();
-    const double u = at.du.dot(step), v = at.dv.dot(step);
-    const double determinant = uu * vv - uv * uv;
-    if (!(determinant > 0)) return Vector2::Zero();
-    return Vector2(vv * u - uv * v, uu * v - uv * u) / determinant;
-}
-
 class Tracker {
 public:
     Tracker(const BSplineSurface& surface, double closeness_mm)
-        : surface_(surface), period_(periods_of(surface)), closeness_mm_(closeness_mm) {}
+        : surface_(surface),
+          period_(periods_of(surface)),
+          closeness_mm_(closeness_mm),
+          foot_(surface) {
+        for (const bool along_u : {true, false}) {
+            for (const bool at_end : {true, false}) {
+                if (const auto pole = pole_of(surface, along_u, at_end)) poles_.push_back(*pole);
+            }
+        }
+    }
 
     ParameterLoop loop(const Model& model, const Loop& loop) {
         ParameterLoop result;
+        foot_ = SurfaceFoot(surface_);
         for (std::uint32_t c = loop.first_coedge; c < loop.first_coedge + loop.coedge_count; ++c) {
             const Coedge& use = model.coedges[c];
-            result.corners.push_back({result.nodes.size(), model[model.start_of(use)].point});
-            if (!append_known(use, result.nodes)) append(model[use.edge], use, result.nodes);
+            for (const Point3& pole : poles_) {
+                if ((model[model.start_of(use)].point - pole).norm() > closeness_mm_) continue;
+                result.passages.push_back({result.nodes.size(), pole});
+            }
+            if (!append_known(use, result)) append(model[use.edge], use, result);
         }
         return result;
     }
 
 private:
-    void append(const Edge& edge, const Coedge& use, std::vector<ParameterNode>& nodes) {
+    // One coedge's, numbered by themselves.
+    struct Stretch {
+        Coedge use;
+        std::vector<ParameterNode> nodes;
+        std::vector<PolePassage> passages;
+    };
+
+    void append(const Edge& edge, const Coedge& use, ParameterLoop& loop) {
         std::vector<double> borders = edge_borders(edge);
         if (use.reversed != (edge.t_end < edge.t_start)) {
             std::reverse(borders.begin(), borders.end());
         }
-        Passage passage{use, {}};
+        Stretch stretch{use, {}, {}};
+        std::vector<double> parameters;
+        const std::size_t first = loop.nodes.size();
         for (std::size_t panel = 0; panel + 1 < borders.size(); ++panel) {
             const double width = borders[panel + 1] - borders[panel];
             for (std::size_t g = 0; g < gauss_at.size(); ++g) {
                 const double t = borders[panel] + gauss_at[g] * width;
                 const Vector3 step = gauss_weight[g] * width * derivative(edge.curve, t);
-                const Foot foot = foot_of(evaluate(edge.curve, t), nodes);
-                append({foot.uv, parameter_step(foot.at, step)}, nodes);
-                passage.nodes.push_back(nodes.back());
+                move_to(evaluate(edge.curve, t), loop.nodes.empty());
+                append({foot_.uv(), parameter_step(foot_.partials(), step)}, loop.nodes);
+                stretch.nodes.push_back(loop.nodes.back());
+                parameters.push_back(t);
             }
         }
-        passages_.push_back(std::move(passage));
+        for (const Point3& pole : poles_) {
+            const double t = nearest_parameter(edge, pole);
+            const auto is_pole = [&](double at) {
+                return (evaluate(edge.curve, at) - pole).norm() <= closeness_mm_;
+            };
+            if (!is_pole(t) || is_pole(edge.t_start) || is_pole(edge.t_end)) continue;
+            const bool rises = borders.front() < borders.back();
+            const auto before = std::count_if(parameters.begin(), parameters.end(),
+                                              [&](double node) { return (node < t) == rises; });
+            stretch.passages.push_back({static_cast<std::size_t>(before), pole});
+            loop.passages.push_back({first + static_cast<std::size_t>(before), pole});
+        }
+        stretches_.push_back(std::move(stretch));
     }
 
     void append(ParameterNode node, std::vector<ParameterNode>& nodes) const {
@@ -76,48 +104,51 @@ private:
     }
 
     // The way back along a seam needs no search.
-    bool append_known(const Coedge& use, std::vector<ParameterNode>& nodes) const {
-        for (const Passage& passage : passages_) {
-            if (passage.use.edge != use.edge || passage.use.reversed == use.reversed) continue;
-            for (auto node = passage.nodes.rbegin(); node != passage.nodes.rend(); ++node) {
-                append({node->uv, -node->step}, nodes);
+    bool append_known(const Coedge& use, ParameterLoop& loop) const {
+        for (const Stretch& known : stretches_) {
+            if (known.use.edge != use.edge || known.use.reversed == use.reversed) continue;
+            const std::size_t last = loop.nodes.size() + known.nodes.size();
+            for (auto node = known.nodes.rbegin(); node != known.nodes.rend(); ++node) {
+                append({node->uv, -node->step}, loop.nodes);
+            }
+            for (const PolePassage& passage : known.passages) {
+                loop.passages.push_back({last - passage.next_node, passage.pole});
             }
             return true;
         }
         return false;
     }
 
-    struct Passage {
-        Coedge use;
-        std::vector<ParameterNode> nodes;
-    };
-    struct Foot {
-        Point2 uv;
-        Partials at;
-    };
-
-    // Searched for once; from there on, neighbours are near. Where one is not, it was another place's neighbour.
-    Foot foot_of(const Point3& point, const std::vector<ParameterNode>& nodes) {
-        const double allowed_mm = std::max(2 * distance_mm_, closeness_mm_);
-        if (!nodes.empty()) {
-            const Foot near = foot_at(point, invert_near(surface_, point, nodes.back().uv));
-            if (distance_mm_ <= allowed_mm) return near;
-        }
-        return foot_at(point, invert(surface_, point));
-    }
-    Foot foot_at(const Point3& point, const Point2& uv) {
-        const Foot foot{uv, partials(surface_, uv)};
-        distance_mm_ = (foot.at.point - point).norm();
-        return foot;
+    // A foot as far off as neighbours are apart is another place's neighbour.
+    void move_to(const Point3& point, bool is_first) {
+        constexpr double doubtful_share = 0.125;
+        const double step_mm = is_first ? 0 : (point - point_).norm();
+        point_ = point;
+        foot_.move_to(point,
+                      std::max({2 * foot_.distance_mm(), closeness_mm_, doubtful_share * step_mm}));
     }
 
     const BSplineSurface& surface_;
     Vector2 period_;
-    double closeness_mm_, distance_mm_ = 0;
-    std::vector<Passage> passages_;
+    double closeness_mm_;
+    SurfaceFoot foot_;
+    Point3 point_ = Point3::Zero();  // that it is the foot of
+    std::vector<Point3> poles_;
+    std::vector<Stretch> stretches_;
 };
 
 }  // namespace
+
+std::optional<Point3> pole_of(const BSplineSurface& s, bool along_u, bool at_end) {
+    const std::size_t count = along_u ? s.count_u : s.count_v;
+    const std::size_t step = along_u ? s.count_v : 1;
+    const std::size_t first = !at_end ? 0 : along_u ? s.count_v - 1 : (s.count_u - 1) * s.count_v;
+    for (std::size_t i = 1; i < count; ++i) {
+        const Vector3 apart = s.control_points[first + i * step] - s.control_points[first];
+        if (apart.norm() > resolution_mm) return std::nullopt;
+    }
+    return s.control_points[first];
+}
 
 Vector2 periods_of(const BSplineSurface& s) {
     return {s.closed_u ? s.end_u() - s.start_u() : 0, s.closed_v ? s.end_v() - s.start_v() : 0};

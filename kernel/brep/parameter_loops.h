@@ -3,12 +3,13 @@
 // Contract
 //  1. Nodes lie on the coedges in order, as Gauss points of panels (quadrature.h). `uv` is the foot on the surface;
 //     through a seam it is followed out of the domain, so that neighbours are always near.
-//  2. Between one coedge's nodes and the next one's, parameters jump only where the loop passes a pole: a side of the
-//     surface that is one point.
+//  2. From one node to the next, parameters jump only where the loop passes a pole: a side of the surface that is one
+//     point.
 
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "kernel/brep/model.h"
@@ -21,16 +22,19 @@ struct ParameterNode {
     Vector2 step;
 };
 
-// Where a coedge's nodes begin.
-struct ParameterCorner {
+// Between the nodes before `next_node`, the last one before the first, and that.
+struct PolePassage {
     std::size_t next_node;
-    Point3 point;
+    Point3 pole;
 };
 
 struct ParameterLoop {
     std::vector<ParameterNode> nodes;
-    std::vector<ParameterCorner> corners;
+    std::vector<PolePassage> passages;
 };
+
+// The point that the first or the last line of control points along u (or v) is, if it is one.
+std::optional<Point3> pole_of(const BSplineSurface& surface, bool along_u, bool at_end);
 
 // Of each parameter; 0: the surface is not closed that way.
 Vector2 periods_of(const BSplineSurface& surface);

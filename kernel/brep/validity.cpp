@@ -2,16 +2,14 @@
 
 #include "kernel/brep/validity.h"
 
+#include <string>
+#include <utility>
+
+#include "kernel/brep/defect.h"
+#include "kernel/brep/gaps.h"
+
 namespace lyr {
 namespace {
-
-Diagnostic warning(std::string message, SourceId source, const Point3& point) {
-    return {
-        Severity::warning,
-        ExitStatus::geometry,
-        std::move(message),
-        {.entity = source, .layer = {}, .x_mm = point.x(), .y_mm = point.y(), .z_mm = point.z()}};
-}
 
 // Calls visit(loop) for every loop of a shell.
 template <class Visit>
@@ -30,6 +28,27 @@ void count_uses(const Model& model, const Shell& shell, std::vector<int>& excess
             excess[coedge.edge.value] += coedge.reversed ? -1 : 1;
         }
     });
+}
+
+// Edges that more than one coedge uses, but not as often along as against.
+void report_contradictions(const Model& model, Diagnostics& found) {
+    std::vector<bool> is_free(model.edges.size(), false);
+    for (const FreeEdge& free : free_edges(model)) is_free[free.edge.value] = true;
+    std::vector<int> excess(model.edges.size(), 0);
+    for (const ShellId id : open_shells(model)) {
+        count_uses(model, model[id], excess);
+        for_each_loop(model, model[id], [&](const Loop& loop) {
+            for (std::uint32_t c = 0; c < loop.coedge_count; ++c) {
+                const EdgeId e = model.coedges[loop.first_coedge + c].edge;
+                if (std::exchange(excess[e.value], 0) == 0 || is_free[e.value]) continue;
+                const Edge& edge = model[e];
+                found.push_back(defect(Severity::warning,
+                                       "the faces that meet in the edge do not bound shell #" +
+                                           std::to_string(model[id].source) + " from one side",
+                                       edge.source, model[edge.start].point));
+            }
+        });
+    }
 }
 
 }  // namespace
@@ -60,23 +79,20 @@ Diagnostics validate(const Model& model) {
             const Coedge& here = model.coedges[loop.first_coedge + c];
             const Coedge& next = model.coedges[loop.first_coedge + (c + 1) % loop.coedge_count];
             if (model.end_of(here) == model.start_of(next)) continue;
-            found.push_back(warning(
+            found.push_back(defect(
+                Severity::warning,
                 "the loop is not closed after edge #" + std::to_string(model[here.edge].source),
                 loop.source, model[model.end_of(here)].point));
         }
     }
-    std::vector<int> excess(model.edges.size(), 0);
-    for (const ShellId id : open_shells(model)) {
-        count_uses(model, model[id], excess);
-        for (std::size_t e = 0; e < excess.size(); ++e) {
-            if (excess[e] == 0) continue;
-            const Edge& edge = model.edges[e];
-            found.push_back(warning("the edge is not shared by two faces that meet there; shell #" +
-                                        std::to_string(model[id].source) + " is open",
-                                    edge.source, model[edge.start].point));
-            excess[e] = 0;
-        }
+    for (const Gap& gap : gaps(model)) {
+        const Edge& first = model[gap.edges.front()];
+        found.push_back(defect(Severity::warning,
+                               "shell #" + std::to_string(model[gap.shell].source) +
+                                   " is open: " + description(model, gap),
+                               first.source, model[first.start].point));
     }
+    report_contradictions(model, found);
     return found;
 }
 

@@ -3,7 +3,8 @@
 // Contract
 //  1. An empty answer means: every index is in range, consecutive coedges of a loop meet in a vertex, and within
 //     each shell every edge has as many coedges along it as against it.
-//  2. Everything else is named, with the #id of the loop or edge and its position.
+//  2. Everything else is named, with the #id of the loop or edge and its position; of a hole in a shell all edges and
+//     the size.
 
 #pragma once
 

@@ -14,7 +14,9 @@
 #include <numbers>
 
 #include "kernel/brep/freeform_integrals.h"
+#include "kernel/brep/loop_orientation.h"
 #include "kernel/geometry/angle.h"
+#include "kernel/geometry/tolerance.h"
 
 namespace lyr {
 
@@ -288,10 +290,15 @@ TorusIntegrals tube_integrals(const Torus& torus, const FaceNodes& face, double 
                              : torus_integrals(torus, face, sense);
 }
 
-// Three times the face's part of the volume.
-double flux(const Model& model, const Face& face, const Point3& c) {
+// A face's area, and three times its part of the volume.
+struct FaceIntegrals {
+    double area, flux;
+};
+
+FaceIntegrals integrals_of(const Model& model, const Face& face, const Point3& c) {
     if (std::holds_alternative<SharedBSplineSurface>(face.surface)) {
-        return freeform_integrals(model, face, c).flux_mm3;
+        const FreeformIntegrals integrals = freeform_integrals(model, face, c);
+        return {integrals.area_mm2, integrals.flux_mm3};
     }
     const FaceNodes nodes = nodes_of(model, face);
     const double sense = face.same_sense ? 1 : -1;
@@ -301,26 +308,29 @@ double flux(const Model& model, const Face& face, const Point3& c) {
         double sense;
         Vector3 outward;
         Point3 c;
-        double operator()(const Plane& s) const { return (s.frame.origin - c).dot(outward); }
-        double operator()(const Cylinder& s) const {
-            return (s.frame.origin - c).dot(outward) +
-                   sense * s.radius_mm * std::abs(cylinder_area(s, nodes, sense));
+        FaceIntegrals operator()(const Plane& s) const {
+            return {plane_area(s, nodes, sense), (s.frame.origin - c).dot(outward)};
         }
-        double operator()(const Cone& s) const {
+        FaceIntegrals operator()(const Cylinder& s) const {
+            const double area = cylinder_area(s, nodes, sense);
+            return {area, (s.frame.origin - c).dot(outward) + sense * s.radius_mm * std::abs(area)};
+        }
+        FaceIntegrals operator()(const Cone& s) const {
             const Point3 apex =
                 s.frame.origin - s.radius_mm / std::tan(s.half_angle_rad) * s.frame.z;
-            return (apex - c).dot(outward);
+            return {cone_area(s, nodes, sense), (apex - c).dot(outward)};
         }
-        double operator()(const Sphere& s) const {
-            return (s.frame.origin - c).dot(outward) +
-                   sense * s.radius_mm * sphere_area(s, nodes, sense);
+        FaceIntegrals operator()(const Sphere& s) const {
+            const double area = sphere_area(s, nodes, sense);
+            return {area, (s.frame.origin - c).dot(outward) + sense * s.radius_mm * area};
         }
-        double operator()(const Torus& s) const {
+        FaceIntegrals operator()(const Torus& s) const {
             const TorusIntegrals integrals = tube_integrals(s, nodes, sense);
-            return (s.frame.origin - c).dot(outward) +
-                   sense * (s.minor_mm * integrals.area + s.major_mm * integrals.cosine);
+            return {integrals.area,
+                    (s.frame.origin - c).dot(outward) +
+                        sense * (s.minor_mm * integrals.area + s.major_mm * integrals.cosine)};
         }
-        double operator()(const SharedBSplineSurface&) const { return 0; }  // see above
+        FaceIntegrals operator()(const SharedBSplineSurface&) const { return {0, 0}; }  // see above
     };
     return std::visit(Visitor{nodes, sense, outward, c}, face.surface);
 }
@@ -353,40 +363,41 @@ double signed_volume_mm3(const Model& model, ShellId id) {
     const Point3 c = near_point(model, shell);
     double sum = 0;
     for (std::uint32_t f = shell.first_face; f < shell.first_face + shell.face_count; ++f) {
-        sum += flux(model, model.faces[f], c);
+        sum += integrals_of(model, model.faces[f], c).flux;
     }
     return sum / 3;
 }
 
 double signed_area_mm2(const Model& model, FaceId id) {
-    const Face& face = model[id];
-    if (std::holds_alternative<SharedBSplineSurface>(face.surface)) {
-        return freeform_integrals(model, face, Point3::Zero()).area_mm2;
+    return integrals_of(model, model[id], near_point(model, model[model[id].shell])).area;
+}
+
+ShellOrientation orient_closed_shell(Model& model, ShellId id, bool is_void) {
+    // The sign of a sliver's area is that of its edges' round-off: resolution_mm over a length of ten metres.
+    constexpr double certain_area_mm2 = resolution_mm * 1e4;
+    const Shell& shell = model[id];
+    const Point3 c = near_point(model, shell);
+    ShellOrientation result;
+    for (std::uint32_t f = shell.first_face; f < shell.first_face + shell.face_count; ++f) {
+        Face& face = model.faces[f];
+        FaceIntegrals integrals = integrals_of(model, face, c);
+        if (integrals.area < -certain_area_mm2) {
+            face.same_sense = !face.same_sense;
+            ++result.faces_turned;
+            integrals = integrals_of(model, face, c);
+        }
+        result.volume_mm3 += integrals.flux / 3;
+        result.area_mm2 += std::abs(integrals.area);
     }
-    struct Visitor {
-        FaceNodes nodes;
-        double sense;
-        double operator()(const Plane& s) const { return plane_area(s, nodes, sense); }
-        double operator()(const Cylinder& s) const { return cylinder_area(s, nodes, sense); }
-        double operator()(const Cone& s) const { return cone_area(s, nodes, sense); }
-        double operator()(const Sphere& s) const { return sphere_area(s, nodes, sense); }
-        double operator()(const Torus& s) const { return tube_integrals(s, nodes, sense).area; }
-        double operator()(const SharedBSplineSurface&) const { return 0; }  // see above
-    };
-    return std::visit(Visitor{nodes_of(model, face), face.same_sense ? 1.0 : -1.0}, face.surface);
+    result.is_reversed = is_void ? result.volume_mm3 > 0 : result.volume_mm3 < 0;
+    if (result.is_reversed) reverse_shell(model, id);
+    return result;
 }
 
 void reverse_shell(Model& model, ShellId id) {
     const Shell& shell = model[id];
     for (std::uint32_t f = shell.first_face; f < shell.first_face + shell.face_count; ++f) {
-        Face& face = model.faces[f];
-        face.same_sense = !face.same_sense;
-        for (std::uint32_t l = face.first_loop; l < face.first_loop + face.loop_count; ++l) {
-            const auto first = model.coedges.begin() + model.loops[l].first_coedge;
-            const auto last = first + model.loops[l].coedge_count;
-            for (auto use = first; use != last; ++use) use->reversed = !use->reversed;
-            std::reverse(first, last);
-        }
+        reverse_face(model, FaceId{f});
     }
 }
 

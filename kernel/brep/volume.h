@@ -15,8 +15,13 @@
 //     is, where same_sense and loops contradict each other. On spheres, tori and B-spline surfaces that close like
 //     them there is no telling, for the boundary of a region is that of the rest as well: there it is positive.
 //  5. reverse_shell() turns a shell's faces around, loops included: the volume changes its sign.
+//  6. orient_closed_shell() makes a closed shell's faces look away from the material, those of a void into it. Loops
+//     agree with those next to them, same_sense is one face's word alone: where they contradict each other, the loops
+//     are taken. Then the volume's sign decides.
 
 #pragma once
+
+#include <cstddef>
 
 #include "kernel/brep/model.h"
 
@@ -30,5 +35,13 @@ double signed_volume_mm3(const Model& model, ShellId shell);
 double signed_area_mm2(const Model& model, FaceId face);
 
 void reverse_shell(Model& model, ShellId shell);
+
+struct ShellOrientation {
+    std::size_t faces_turned = 0;         // their same_sense alone
+    bool is_reversed = false;             // the shell, after that
+    double volume_mm3 = 0, area_mm2 = 0;  // the volume as it was stated
+};
+
+ShellOrientation orient_closed_shell(Model& model, ShellId shell, bool is_void);
 
 }  // namespace lyr

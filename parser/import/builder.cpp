@@ -132,11 +132,11 @@ void Builder::begin_solid(std::string name, SourceId source) {
     model_.solids.push_back({std::move(name), index(model_.shells), 0, source});
 }
 
-Status Builder::add_shell(const ShellRecord& record) {
+Status Builder::add_shell(const ShellRecord& record, bool is_surface) {
     const ShellId shell(model_.shells.size());
     const SolidId solid(model_.solids.size() - 1);
     model_.shells.push_back({index(model_.faces), static_cast<std::uint32_t>(record.faces.size()),
-                             solid, file_.id(record.shell)});
+                             solid, file_.id(record.shell), is_surface});
     ++model_.solids.back().shell_count;
     for (const FaceRecord& face : record.faces) {
         if (const Status status = add_face(record, face, shell); !status) return status;
@@ -146,16 +146,16 @@ Status Builder::add_shell(const ShellRecord& record) {
 
 void Builder::orient_last_shell(const ShellRecord& record, bool is_void, bool is_stated) {
     if (open_edge_count(record) > 0) return;
-    const ShellId shell(model_.shells.size() - 1);
-    if (const std::size_t faces = follow_loops(model_[shell]); faces > 0) {
+    const ShellOrientation found =
+        orient_closed_shell(model_, ShellId(model_.shells.size() - 1), is_void);
+    if (found.faces_turned > 0) {
         add_note(record.shell,
-                 std::to_string(faces) +
+                 std::to_string(found.faces_turned) +
                      " faces have a same_sense that contradicts their loops; the loops are taken");
     }
-    const double volume_mm3 = signed_volume_mm3(model_, shell);
-    if (is_void ? volume_mm3 <= 0 : volume_mm3 >= 0) return;
-    reverse_shell(model_, shell);
-    if (is_stated) add_note(record.shell, "it is stated inside out and has been turned around");
+    if (found.is_reversed && is_stated) {
+        add_note(record.shell, "it is stated inside out and has been turned around");
+    }
 }
 
 void Builder::settle_outer_shell() {
@@ -188,23 +188,10 @@ void Builder::settle_outer_shell() {
 }
 
 void Builder::add_note(InstanceIndex instance, const std::string& message) {
-    Diagnostic note = file_.error(instance, named(file_, instance) + ": " + message);
+    Diagnostic note =
+        file_.error(instance, named(file_, instance) + ": " + message, ExitStatus::geometry);
     note.severity = Severity::note;
     diagnostics_.push_back(std::move(note));
-}
-
-// In a closed shell, loops agree with those next to them; same_sense is one face's word alone. The number of faces
-// that have been turned.
-std::size_t Builder::follow_loops(const Shell& shell) {
-    // The sign of a sliver's area is that of its edges' round-off: resolution_mm over a length of ten metres.
-    constexpr double certain_area_mm2 = resolution_mm * 1e4;
-    std::size_t turned = 0;
-    for (std::uint32_t f = shell.first_face; f < shell.first_face + shell.face_count; ++f) {
-        if (!(signed_area_mm2(model_, FaceId(std::size_t{f})) < -certain_area_mm2)) continue;
-        model_.faces[f].same_sense = !model_.faces[f].same_sense;
-        ++turned;
-    }
-    return turned;
 }
 
 Status Builder::add_face(const ShellRecord& record, const FaceRecord& face, ShellId shell) {

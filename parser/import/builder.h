@@ -25,7 +25,7 @@ public:
 
     // What add_shell() adds belongs to the solid begun last.
     void begin_solid(std::string name, SourceId source);
-    Status add_shell(const ShellRecord& record);
+    Status add_shell(const ShellRecord& record, bool is_surface = false);
 
     // What closes has an inside, and that decides where faces look. Files do not agree on it: some give same_sense
     // against the loops, some turn a void's shell before its orientation flag is applied and some after, and a
@@ -40,7 +40,6 @@ public:
 
 private:
     void add_note(InstanceIndex instance, const std::string& message);
-    std::size_t follow_loops(const Shell& shell);
     Status add_face(const ShellRecord& record, const FaceRecord& face, ShellId shell);
     Result<StatedSurface> surface_of(const FaceRecord& face, std::uint32_t first_loop);
     Status add_loop(const ShellRecord& record, const LoopRecord& loop);

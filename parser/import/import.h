@@ -13,8 +13,9 @@
 //  4. What belongs to a solid and is not understood is an error (status unsupported) naming the entity and its #id;
 //     what contradicts the standard (missing, cyclic, of the wrong type or size) is one too (status input). No face
 //     is ever left out.
-//  5. A surface model that does not close bounds no volume: beside solids it is a warning, alone an error.
-//     A file with no solid at all is an error (status input).
+//  5. The open shells of a surface model are one solid, marked as surfaces (Shell::is_surface), with one Vertex and Edge
+//     for each instance: whether they bound a volume is for heal() to find. What bounds none for certain (triangles)
+//     is a warning beside solids, alone an error. A file with none of all these is an error (status input).
 
 #pragma once
 

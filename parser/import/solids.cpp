@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "parser/import/builder.h"
 #include "parser/import/shells.h"
@@ -59,24 +60,24 @@ Result<Part> read_surface_model(const File& file, InstanceIndex item, const Unit
     const std::vector<InstanceIndex> shells = fields.references(1);
     if (!fields.ok()) return fields.error();
     Builder builder(file, units, trail, diagnostics);
-    Diagnostics open;
+    std::vector<ShellRecord> open;
     for (const InstanceIndex shell : shells) {
         if (taken.contains(shell.value)) continue;
-        const Result<ShellRecord> record = read_shell(file, item, shell, trail);
+        Result<ShellRecord> record = read_shell(file, item, shell, trail);
         if (!record) return record.error();
-        if (const std::size_t edges = open_edge_count(*record); edges > 0) {
-            open.push_back(
-                file.error(shell,
-                           named(file, shell) + " is an open surface (" + std::to_string(edges) +
-                               " edges are not shared by two faces); sewing is not supported",
-                           ExitStatus::unsupported));
+        if (open_edge_count(*record) > 0) {
+            open.push_back(std::move(*record));
             continue;
         }
         builder.begin_solid(name, file.id(item));
         if (const Status status = builder.add_shell(*record); !status) return status.error();
         builder.orient_last_shell(*record, false, false);
     }
-    return Part{builder.take(), std::move(open)};
+    if (!open.empty()) builder.begin_solid(name, file.id(item));
+    for (const ShellRecord& record : open) {
+        if (const Status status = builder.add_shell(record, true); !status) return status.error();
+    }
+    return Part{builder.take(), {}};
 }
 
 }  // namespace

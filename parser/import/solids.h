@@ -4,8 +4,9 @@
 //  1. Vertices, edges and faces are shared as the file shares them; each solid has its own.
 //  2. Void shells come after the outer one. Every closed shell looks away from the material, voids into the void,
 //     whichever way the file states it; where it states it the other way, a note says so.
-//  3. Surface models give one solid for each closed shell, sets of triangles one solid each; what bounds no volume
-//     (a shell that does not close) is listed in `open`, as errors, and its geometry is not read.
+//  3. Surface models give one solid for each closed shell, and one for all their open shells together, which are
+//     marked as surfaces: heal() finds what they bound. Sets of triangles give one solid each; those that do not
+//     close are listed in `open`, as errors, and their geometry is not read.
 
 #pragma once
 

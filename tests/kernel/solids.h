@@ -115,6 +115,44 @@ inline Model box(double x, double y, double z) {
     return b.finish();
 }
 
+// A box with a bore along z.
+inline Model drilled_box(double x, double y, double z, double radius) {
+    const Model whole = box(x, y, z);
+    Model model = whole;
+    model.loops.clear();
+    model.coedges.clear();
+    EdgeId rim[2];
+    for (const int s : {0, 1}) {
+        const double height = (s - 0.5) * z;
+        const VertexId at{model.vertices.size()};
+        model.vertices.push_back({{radius, 0, height}, 80 + at.value});
+        rim[s] = EdgeId{model.edges.size()};
+        model.edges.push_back({Circle{Builder::frame_at({0, 0, height}), radius}, 0, 2 * pi, at, at,
+                               1000 + rim[s].value});
+    }
+    const auto add_loop = [&](const std::vector<Coedge>& coedges) {
+        model.loops.push_back({static_cast<std::uint32_t>(model.coedges.size()),
+                               static_cast<std::uint32_t>(coedges.size()), 0});
+        model.coedges.insert(model.coedges.end(), coedges.begin(), coedges.end());
+        return static_cast<std::uint32_t>(model.loops.size() - 1);
+    };
+    for (Face& face : model.faces) {
+        const auto first = whole.coedges.begin() + whole.loops[face.first_loop].first_coedge;
+        face.first_loop = add_loop({first, first + 4});
+        const Plane& plane = std::get<Plane>(face.surface);
+        if (std::abs(plane.frame.z.z()) < 0.5) continue;
+        const int s = plane.frame.origin.z() > 0 ? 1 : 0;
+        add_loop({{rim[s], s == 1}});
+        face.loop_count = 2;
+    }
+    const std::uint32_t inside = add_loop({{rim[0], true}});
+    add_loop({{rim[1], false}});
+    model.faces.push_back(
+        {Cylinder{Builder::frame_at({0, 0, 0}), radius}, false, inside, 2, ShellId{0}, 2999});
+    ++model.shells[0].face_count;
+    return model;
+}
+
 inline Surface side_surface(double r0, double r1, double h) {
     if (r0 == r1) return Cylinder{Builder::frame_at({0, 0, -h / 2}), r0};
     if (r0 < r1) return Cone{Builder::frame_at({0, 0, -h / 2}), r0, std::atan2(r1 - r0, h)};

@@ -161,7 +161,7 @@ TEST_CASE("freeform integrals 3: balls, whole and in parts") {
                              pi * h * h * (3 * r - h) / 3, whole);
             }
         }
-        for (const double angle : {0.3, 2.0, 3.3, 6.0}) {
+        for (const double angle : {0.3, 2.0, pi, 3.3, 6.0}) {
             // A wedge between two meridians.
             Builder b;
             const VertexId south = b.vertex(0, 0, -r), north = b.vertex(0, 0, r);
@@ -173,6 +173,30 @@ TEST_CASE("freeform integrals 3: balls, whole and in parts") {
             b.face(Plane{upright({0, 0, 0}, angle)}, false, {{{axis}, {second, true}}});
             CAPTURE(angle);
             check_volume(b.finish(), whole * angle / (2 * pi), whole);
+        }
+    }
+}
+
+TEST_CASE("freeform integrals 3: a loop may pass through both poles, at vertices or within edges") {
+    const double r = 3, half = 2.0 / 3 * pi * r * r * r;
+    for (const bool swapped : {false, true}) {
+        for (const double angle : {0.0, 0.3, pi / 2, 4.0}) {
+            for (const double start : {0.0, 0.1, pi / 2}) {
+                CAPTURE(angle);
+                CAPTURE(start);
+                // The half of the ball beside an upright circle that begins at `start` over the equator.
+                Builder b;
+                const Circle circle{upright({0, 0, 0}, angle), r};
+                const Point3 at = evaluate(Curve(circle), start);
+                const VertexId v = b.vertex(at.x(), at.y(), at.z());
+                const EdgeId rim = b.edge(circle, v, v);
+                add_face(b, ball_surface(r, swapped), swapped, {{{rim}}});
+                b.face(Plane{circle.frame}, false, {{{rim, true}}});
+                const Model model = b.finish();
+                check_volume(model, half, 2 * half);
+                CHECK(signed_area_mm2(model, FaceId{0}) ==
+                      doctest::Approx(2 * pi * r * r).epsilon(freeform_accuracy));
+            }
         }
     }
 }

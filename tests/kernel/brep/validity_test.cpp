@@ -1,5 +1,9 @@
 #include <doctest/doctest.h>
 
+#include <set>
+#include <string>
+
+#include "kernel/brep/gaps.h"
 #include "kernel/brep/validity.h"
 #include "kernel/solids.h"
 
@@ -15,13 +19,25 @@ TEST_CASE("validity 1: whole solids have nothing to report") {
     }
 }
 
-TEST_CASE("validity 2: a missing face leaves its edges named") {
+TEST_CASE("validity 2: a missing face leaves a hole whose edges and size are named") {
     Model model = box(3, 4, 5);
     model.faces.pop_back();
     --model.shells[0].face_count;
     const Diagnostics found = validate(model);
-    CHECK(found.size() == 4);
-    for (const Diagnostic& diagnostic : found) CHECK(diagnostic.where.entity >= 1000);
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].where.entity >= 1000);
+    CHECK(found[0].where.x_mm.has_value());
+    // The last face is the top, 3 by 4.
+    CHECK(found[0].message.find("12 mm2, 14 mm around") != std::string::npos);
+    std::set<EdgeId> edges;
+    for (const Gap& gap : gaps(model)) edges.insert(gap.edges.begin(), gap.edges.end());
+    CHECK(edges.size() == 4);
+    for (const EdgeId edge : edges) {
+        const std::string name = '#' + std::to_string(model[edge].source);
+        CHECK(found[0].message.find(name) != std::string::npos);
+        CHECK(model[model[edge].start].point.z() == 2.5);
+        CHECK(model[model[edge].end].point.z() == 2.5);
+    }
     CHECK(open_shells(model).size() == 1);
 }
 

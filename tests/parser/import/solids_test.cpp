@@ -184,7 +184,7 @@ TEST_CASE("1: the lemon inside a torus that crosses itself has its normal the ot
     CHECK(normal(face.surface, invert(face.surface, {3, 0, 0.01})).x() > 0.9);
 }
 
-TEST_CASE("3, 5: surface models: closed shells are solids, open ones are not") {
+TEST_CASE("3, 5: surface models: closed shells are solids, open ones are marked") {
     StepText closed;
     const int shell =
         closed.add("OPEN_SHELL(''," + StepText::refs(closed.box_faces({0, 0, 0}, {1, 2, 3})) + ")");
@@ -197,26 +197,31 @@ TEST_CASE("3, 5: surface models: closed shells are solids, open ones are not") {
     CHECK(result.model.solids.size() == 2);
     CHECK(plane_volume(result.model) == doctest::Approx(6 + 1));
 
-    const auto with_open = [](bool beside_solid) {
-        StepText step;
-        std::vector<int> faces = step.box_faces({0, 0, 0}, {1, 2, 3});
-        faces.pop_back();
-        const int open = step.add("OPEN_SHELL(''," + StepText::refs(faces) + ")");
-        std::vector<int> items{
-            step.add("SHELL_BASED_SURFACE_MODEL(''," + StepText::refs({open}) + ")")};
-        if (beside_solid) items.push_back(step.box({0, 0, 0}, {1, 1, 1}));
-        step.representation(items, step.millimetres());
-        return step;
-    };
-    const Diagnostic error = refused(with_open(false));
-    CHECK(error.status == ExitStatus::unsupported);
-    CHECK(mentions(error, "OPEN_SHELL #"));
-    CHECK(mentions(error, "4 edges"));
-    const Imported beside = imported(with_open(true));
-    CHECK(beside.model.solids.size() == 1);
-    REQUIRE(beside.diagnostics.size() == 1);
-    CHECK(beside.diagnostics[0].severity == Severity::warning);
-    CHECK(mentions(beside.diagnostics[0], "OPEN_SHELL #"));
+    CHECK(!result.model.shells.at(0).is_surface);
+    CHECK(!result.model.shells.at(1).is_surface);
+
+    // Two halves of a box that share edges, beside a whole one.
+    StepText step;
+    const std::vector<int> faces = step.box_faces({0, 0, 0}, {1, 2, 3});
+    const int one = step.add("OPEN_SHELL(''," + StepText::refs({faces[0], faces[1]}) + ")");
+    const int rest =
+        step.add("OPEN_SHELL(''," + StepText::refs({faces[2], faces[3], faces[4], faces[5]}) + ")");
+    const int whole = step.box_shell({5, 5, 5}, {6, 6, 6});
+    const int halves =
+        step.add("SHELL_BASED_SURFACE_MODEL('halves'," + StepText::refs({one, whole, rest}) + ")");
+    step.representation({halves, step.box({0, 0, 0}, {1, 1, 1})}, step.millimetres());
+    const Imported mixed = imported(step);
+    CHECK(mixed.diagnostics.empty());
+    REQUIRE(mixed.model.solids.size() == 3);
+    CHECK(mixed.model.solids[0].shell_count == 1);
+    CHECK(!mixed.model.shells[0].is_surface);
+    CHECK(mixed.model.solids[1].name == "halves");
+    CHECK(mixed.model.solids[1].shell_count == 2);
+    CHECK(mixed.model.shells[1].is_surface);
+    CHECK(mixed.model.shells[2].is_surface);
+    CHECK(mixed.model.shells[1].face_count == 2);
+    CHECK(mixed.model.shells[2].face_count == 4);
+    CHECK(mixed.model.edges.size() == 3 * 12);
 }
 
 TEST_CASE("3: a surface model on the shell of a solid is not another solid") {
