@@ -47,15 +47,15 @@ struct Basis {
 
 // From the basis functions of one degree less (or their derivatives) to the derivatives of those of `degree`.
 // `knots` points at the span's start.
-void differentiate(const double* knots, int degree, Row& row) {
+void differentiate(const double* knots, int degree, const Row& lower, Row& out) {
     double before = 0;
     for (int r = 0; r < degree; ++r) {
         const auto i = static_cast<std::size_t>(r);
-        const double term = row[i] / (knots[r + 1] - knots[r + 1 - degree]);
-        row[i] = degree * (before - term);
+        const double term = lower[i] / (knots[r + 1] - knots[r + 1 - degree]);
+        out[i] = degree * (before - term);
         before = term;
     }
-    row[static_cast<std::size_t>(degree)] = degree * before;
+    out[static_cast<std::size_t>(degree)] = degree * before;
 }
 
 void raise(const double* knots, int degree, double t, Row& row) {
@@ -83,12 +83,10 @@ Basis basis_at(const Axis& axis, double t, double last) {
     basis.bend[0] = basis.bend[1] = 0;
     for (int degree = 1; degree <= axis.degree; ++degree) {
         if (derivatives > 1 && degree == axis.degree && degree > 1) {
-            basis.bend = basis.slope;
-            differentiate(knots, degree, basis.bend);
+            differentiate(knots, degree, basis.slope, basis.bend);
         }
         if (derivatives > 0 && degree + derivatives > axis.degree) {
-            basis.slope = basis.value;
-            differentiate(knots, degree, basis.slope);
+            differentiate(knots, degree, basis.value, basis.slope);
         }
         raise(knots, degree, t, basis.value);
     }
