@@ -6,7 +6,8 @@
 //       sphere    (longitude, latitude)                         torus (around the axis, around the tube)
 //       B-spline  see bspline_surface.h
 //  2. normal(s, uv) is the unit normal that ISO 10303-42 gives the surface: away from the axis, centre or tube
-//     centre; a plane's z; for a B-spline that of d/du x d/dv. It is geometric: mirroring a model mirrors it with its points.
+//     centre; a plane's z; for a B-spline that of d/du x d/dv. It is geometric: mirroring a model mirrors it with
+//     its points.
 //  3. invert(s, p) are the parameters of the point of s nearest to p, angles in (-pi, pi].
 
 #pragma once

@@ -1,5 +1,5 @@
-// Solids are listed more than once: by drawings, by aspects of a shape, by approximations. Each is taken where it is the
-// shape of something.
+// Solids are listed more than once: by drawings, by aspects of a shape, by approximations. Each is taken where it is
+// the shape of something.
 
 #include "parser/import/group_items.h"
 
