@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 #include <fcntl.h>
+#include <signal.h>
 
 #include <atomic>
 #include <cstdlib>
@@ -87,6 +88,11 @@ public:
         REQUIRE(::pipe2(ends, O_CLOEXEC) == 0);
         read_end = ends[0];
         writer_ = std::thread([this, out = ends[1]] {
+            // A reader that stops early closes its end; then write() fails, and that is enough.
+            sigset_t broken_pipe;
+            ::sigemptyset(&broken_pipe);
+            ::sigaddset(&broken_pipe, SIGPIPE);
+            ::pthread_sigmask(SIG_BLOCK, &broken_pipe, nullptr);
             std::size_t piece = 1;
             for (std::size_t at = 0; at < bytes_.size();) {
                 const std::size_t size = std::min(piece, bytes_.size() - at);
