@@ -9,6 +9,7 @@
 #include <string>
 
 #include "kernel/brep/placement.h"
+#include "kernel/section_figures.h"
 #include "kernel/solids.h"
 
 using namespace lyr;
@@ -83,22 +84,6 @@ std::vector<Eigen::Affine3d> positions() {
     mirrored.prescale(Vector3(1, -1, 1));
     result.push_back(mirrored);
     return result;
-}
-
-double area_of(const Section& section) {
-    double area = 0;
-    for (const SolidSection& solid : section.solids) {
-        for (const Contour& contour : solid.contours) area += area_mm2(contour);
-    }
-    return area;
-}
-
-double length_of(const Section& section) {
-    double length = 0;
-    for (const SolidSection& solid : section.solids) {
-        for (const Contour& contour : solid.contours) length += length_mm(contour);
-    }
-    return length;
 }
 
 // The distance of a point from the nearest of the model's surfaces.

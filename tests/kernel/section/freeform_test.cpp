@@ -6,29 +6,10 @@
 #include "kernel/freeform_solids.h"
 #include "kernel/geometry/random_curves.h"
 #include "kernel/section/cutter.h"
+#include "kernel/section_figures.h"
 
 using namespace lyr;
 using namespace lyr::testing;
-
-namespace {
-
-double area_of(const Section& section) {
-    double area = 0;
-    for (const SolidSection& solid : section.solids) {
-        for (const Contour& contour : solid.contours) area += area_mm2(contour);
-    }
-    return area;
-}
-
-double length_of(const Section& section) {
-    double length = 0;
-    for (const SolidSection& solid : section.solids) {
-        for (const Contour& contour : solid.contours) length += length_mm(contour);
-    }
-    return length;
-}
-
-}  // namespace
 
 TEST_CASE("free-form: the areas of a bent cube's sections add up to its volume") {
     const Tolerance tolerance{0.001};
