@@ -56,7 +56,7 @@ private:
     int first_spans(const CellCurve& curve, const CurvePoint& start, double chord_mm) const;
     void sample(const CellCurve& curve, LevelCurve& out) const;
     void refine(const CellCurve& curve, double from, const CurvePoint& start, double to,
-                const CurvePoint& end, int depth, LevelCurve& out) const;
+                const CurvePoint& end, int depth, bool settled, LevelCurve& out) const;
     Point2 solve(const CellCurve& curve, double share) const;
     Point2 solve_across(const CellCurve& curve, double share) const;
     CurvePoint point_at(const BezierPatch& patch, const Point2& uv) const;
@@ -199,11 +199,11 @@ Point2 Tracker::solve(const CellCurve& curve, double share) const {
 // Halves a span until the cubic through its ends foretells the middle. The middle is kept, so that what is left of the
 // error is a sixteenth: it goes with the fourth power of the length.
 void Tracker::refine(const CellCurve& curve, double from, const CurvePoint& start, double to,
-                     const CurvePoint& end, int depth, LevelCurve& out) const {
+                     const CurvePoint& end, int depth, bool settled, LevelCurve& out) const {
     constexpr int deepest = 40;
     const double length = (end.point - start.point).norm();
     if (length <= resolution_mm || depth > deepest) return;
-    if (sagitta_mm(start, end) <= allowed_mm_) return;
+    if (settled && sagitta_mm(start, end) <= allowed_mm_) return;
     const double middle = 0.5 * (from + to);
     const BezierPatch& patch =
         mesh_.patches[mesh_.cells[static_cast<std::size_t>(curve.cell)].patch];
@@ -213,9 +213,9 @@ void Tracker::refine(const CellCurve& curve, double from, const CurvePoint& star
         (at.point - start.point).dot(end.point - start.point) / (length * length), 0.0, 1.0);
     const double off = (between(start, end, share).point - at.point).norm();
     const bool fine = off <= allowed_mm_ && sagitta_mm(start, end) <= farthest_from_chord_mm;
-    if (!fine) refine(curve, from, start, middle, at, depth + 1, out);
+    if (!fine) refine(curve, from, start, middle, at, depth + 1, true, out);
     out.points.push_back(at);
-    if (!fine) refine(curve, middle, at, to, end, depth + 1, out);
+    if (!fine) refine(curve, middle, at, to, end, depth + 1, true, out);
 }
 
 // Into how many spans a cell's curve is divided to begin with: one that comes back to where it began (a cell may go once
@@ -223,9 +223,15 @@ void Tracker::refine(const CellCurve& curve, double from, const CurvePoint& star
 int Tracker::first_spans(const CellCurve& curve, const CurvePoint& start, double chord_mm) const {
     const MonotoneCell& cell = mesh_.cells[static_cast<std::size_t>(curve.cell)];
     if (cell.kind == CellKind::flat) return 0;
-    if (chord_mm > farthest_from_chord_mm) return 1;
-    const CurvePoint middle = point_at(mesh_.patches[cell.patch], solve(curve, 0.5));
-    return (middle.point - start.point).norm() > std::max(chord_mm, resolution_mm) ? 4 : 1;
+    // Ends and tangents alone do not tell of a bend between them: a curve of degree 4 can leave along its chord and
+    // arrive along it. With a point for every other degree none is left between two.
+    const BezierPatch& patch = mesh_.patches[cell.patch];
+    const int degree = std::max(patch.degree_u, patch.degree_v);
+    const int spans = degree > 3 ? degree / 2 + 1 : 1;
+    if (chord_mm > farthest_from_chord_mm) return spans;
+    const CurvePoint middle = point_at(patch, solve(curve, 0.5));
+    const bool returns = (middle.point - start.point).norm() > std::max(chord_mm, resolution_mm);
+    return returns ? std::max(spans, 4) : spans;
 }
 
 void Tracker::sample(const CellCurve& curve, LevelCurve& out) const {
@@ -250,7 +256,7 @@ void Tracker::sample(const CellCurve& curve, LevelCurve& out) const {
     for (int i = 1; i <= spans; ++i) {
         const double share = static_cast<double>(i) / spans;
         const CurvePoint to = i == spans ? end : point_at(patch, solve(curve, share));
-        refine(curve, share - 1.0 / spans, from, share, to, 0, out);
+        refine(curve, share - 1.0 / spans, from, share, to, 0, spans > 1, out);
         if (i < spans) out.points.push_back(to);
         from = to;
     }

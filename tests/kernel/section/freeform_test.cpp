@@ -161,3 +161,27 @@ TEST_CASE("free-form: a ring that lies in one cell of its surface is found (C_Ra
         CHECK(curves[0].length_mm() > 40);
     }
 }
+
+TEST_CASE("free-form: a bend between ends that lie along their chord is not lost") {
+    const std::vector<std::vector<double>> sides{
+        {0, 0, 10, 0, 0}, {0, 0, 0, 30, 0, 0, 0}, {0, .01, 0, 8, -8, 0, -.01, 0}};
+    for (const std::vector<double>& offsets : sides) {
+        CAPTURE(offsets.size());
+        const std::size_t n = offsets.size();
+        BSplineCurve curve{static_cast<int>(n) - 1, std::vector<double>(n, 0.0), {}, {}};
+        curve.knots.resize(2 * n, 1.0);
+        for (std::size_t i = 0; i < n; ++i) {
+            curve.control_points.push_back(
+                {40.0 * static_cast<double>(i) / static_cast<double>(n - 1), offsets[i], 0});
+        }
+        double exact = 0;
+        for (int i = 0; i < 20000; ++i) {
+            exact += (evaluate(curve, (i + 1) / 20000.0) - evaluate(curve, i / 20000.0)).norm();
+        }
+        const HeightMesh mesh =
+            height_mesh(std::make_shared<const BSplineSurface>(extruded(curve, {0, 0, 10})));
+        const std::vector<LevelCurve> found = level_curves(mesh, 5, true, 1e-4);
+        REQUIRE(found.size() == 1);
+        CHECK(found[0].length_mm() == doctest::Approx(exact).epsilon(1e-3));
+    }
+}
