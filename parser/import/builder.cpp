@@ -158,6 +158,48 @@ void Builder::orient_last_shell(const ShellRecord& record, bool is_void, bool is
     }
 }
 
+namespace {
+
+Eigen::AlignedBox3d box_of(const Model& model, const Shell& shell) {
+    // As many points of each edge as show an arc's bulge to a share of its size.
+    constexpr int samples = 8;
+    Eigen::AlignedBox3d box;
+    for (std::uint32_t f = shell.first_face; f < shell.first_face + shell.face_count; ++f) {
+        const Face& face = model.faces[f];
+        for (std::uint32_t l = face.first_loop; l < face.first_loop + face.loop_count; ++l) {
+            const Loop& loop = model.loops[l];
+            for (std::uint32_t c = 0; c < loop.coedge_count; ++c) {
+                const Edge& edge = model[model.coedges[loop.first_coedge + c].edge];
+                for (int i = 0; i <= samples; ++i) {
+                    const double share = static_cast<double>(i) / samples;
+                    box.extend(
+                        evaluate(edge.curve, edge.t_start + share * (edge.t_end - edge.t_start)));
+                }
+            }
+        }
+    }
+    return box;
+}
+
+}  // namespace
+
+// The shells of the last solid as solids of their own: none is inside another.
+void Builder::part_shells() {
+    const Solid whole = model_.solids.back();
+    model_.solids.pop_back();
+    for (std::uint32_t s = 0; s < whole.shell_count; ++s) {
+        const ShellId shell(std::size_t{whole.first_shell + s});
+        if (signed_volume_mm3(model_, shell) < 0) reverse_shell(model_, shell);
+        model_.shells[shell.value].solid = SolidId(model_.solids.size());
+        model_.solids.push_back({whole.name, whole.first_shell + s, 1, whole.source});
+    }
+    diagnostics_.push_back({Severity::warning,
+                            ExitStatus::geometry,
+                            "a void of the solid reaches out of it: its shells are taken for "
+                            "solids of their own",
+                            {.entity = whole.source}});
+}
+
 void Builder::settle_outer_shell() {
     const Solid& solid = model_.solids.back();
     const ShellId first(std::size_t{solid.first_shell});
@@ -171,6 +213,10 @@ void Builder::settle_outer_shell() {
         outer = shell;
     }
     if (outer == first) return;
+    if (!box_of(model_, model_[outer]).contains(box_of(model_, model_[first]))) {
+        part_shells();
+        return;
+    }
     for (const ShellId shell : {first, outer}) reverse_shell(model_, shell);
     std::swap(model_.shells[first.value], model_.shells[outer.value]);
     for (const ShellId shell : {first, outer}) {

@@ -33,12 +33,13 @@ public:
     void orient_last_shell(const ShellRecord& record, bool is_void, bool is_stated);
 
     // Of the last solid's shells, all of them oriented as the file states their parts, the one that holds the others is
-    // the outer one.
+    // the outer one. Where the largest does not hold the stated outer one, all are solids of their own.
     void settle_outer_shell();
 
     Model take() { return std::move(model_); }
 
 private:
+    void part_shells();
     void add_note(InstanceIndex instance, const std::string& message);
     Status add_face(const ShellRecord& record, const FaceRecord& face, ShellId shell);
     Result<StatedSurface> surface_of(const FaceRecord& face, std::uint32_t first_loop);

@@ -60,6 +60,21 @@ TEST_CASE("a void that is larger than the outer shell is the outer shell (trj8_k
     }
 }
 
+TEST_CASE(
+    "a larger void that does not hold the outer shell is a solid beside it (trj8_k1-ac-203)") {
+    StepText step;
+    const int outer = step.box_shell({-5, 2, 2}, {5, 4, 4}, {});
+    const int beside = step.box_shell({0, 0, 0}, {10, 10, 10}, {});
+    const int inner = step.add("ORIENTED_CLOSED_SHELL('',*," + StepText::ref(beside) + ",.F.)");
+    const int solid = step.add("BREP_WITH_VOIDS('hollow'," + StepText::ref(outer) + ",(" +
+                               StepText::ref(inner) + "))");
+    step.representation({solid}, step.millimetres());
+    const Imported result = imported(step);
+    check_model(result.model);
+    CHECK(result.model.solids.size() == 2);
+    CHECK(plane_volume(result.model) == doctest::Approx(1000 + 40));
+}
+
 TEST_CASE("a vertex that is not in the file is that of the edge next to it (bug31292)") {
     for (const int edge : {0, 5, 11}) {
         for (const int end : {1, 2}) {
