@@ -28,6 +28,15 @@ Diagnostic cannot_write(const std::string& name, int error) {
             {.file = name}};
 }
 
+// A descriptor, or -1 with errno. A leftover of an earlier process of the same number is removed, never written into: the
+// name may lead elsewhere by now.
+int make_new(const std::string& path) {
+    const int flags = O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC;
+    const int made = ::open(path.c_str(), flags, 0666);
+    if (made >= 0 || errno != EEXIST || ::unlink(path.c_str()) != 0) return made;
+    return ::open(path.c_str(), flags, 0666);
+}
+
 }  // namespace
 
 Result<ReplaceFile> ReplaceFile::open(const std::string& path) {
@@ -66,10 +75,12 @@ Result<ReplaceFile> ReplaceFile::on_descriptor(int descriptor, const std::string
 Result<ReplaceFile> ReplaceFile::beside(const std::string& target, const std::string& name) {
     const std::string temporary = target + '.' + std::to_string(::getpid()) + ".part";
     const std::lock_guard lock(temporaries_lock);
-    std::FILE* const file = std::fopen(temporary.c_str(), "wbe");
-    if (!file) return cannot_write(name, errno);
+    const int descriptor = make_new(temporary);
+    if (descriptor < 0) return cannot_write(name, errno);
     temporaries.insert(temporary);
-    ReplaceFile made(name, file);
+    struct stat replaced {};
+    if (::stat(target.c_str(), &replaced) == 0) ::fchmod(descriptor, replaced.st_mode & 07777);
+    ReplaceFile made(name, ::fdopen(descriptor, "wb"));
     made.target_ = target;
     made.temporary_ = temporary;
     return made;
@@ -109,12 +120,18 @@ void ReplaceFile::write(std::string_view text) {
     write(std::as_bytes(std::span(text.data(), text.size())));
 }
 
-Status ReplaceFile::commit() {
-    std::FILE* const file = std::exchange(file_, nullptr);
+Status ReplaceFile::flush() {
     errno = 0;
-    note(std::fflush(file) == 0);
-    if (!direct() && error_ == 0) note(::fsync(::fileno(file)) == 0);
-    note(std::fclose(file) == 0);
+    note(std::fflush(file_) == 0);
+    if (!direct() && error_ == 0) note(::fsync(::fileno(file_)) == 0);
+    if (error_ != 0) return cannot_write(name_, error_);
+    return Done{};
+}
+
+Status ReplaceFile::commit() {
+    // A failure stays in error_.
+    static_cast<void>(flush());
+    note(std::fclose(std::exchange(file_, nullptr)) == 0);
     if (!direct() && error_ == 0) {
         const std::lock_guard lock(temporaries_lock);
         note(::rename(temporary_.c_str(), target_.c_str()) == 0);

@@ -6,7 +6,8 @@
 //  3. A path that is not a regular file (a pipe, a device) is written directly. So is an open descriptor: "-", which is
 //     standard output, or a name of one, such as /dev/stdout; what it leads to is neither truncated nor renamed.
 //  4. Through a symbolic link the file that it leads to is replaced, or made if it is not there; the link stays.
-//  5. The first failure is the one that commit() reports.
+//  5. A file that is replaced hands its permissions on.
+//  6. The first failure is the one that commit() reports.
 
 #pragma once
 
@@ -30,11 +31,16 @@ public:
     ReplaceFile& operator=(ReplaceFile&&) = delete;
     ~ReplaceFile();
 
-    // Buffered; a failure to write is reported by commit().
+    // Buffered; a failure to write is reported by flush() and commit(), and shows in failed().
     void write(std::span<const std::byte> bytes);
     void write(std::string_view text);
+    bool failed() const { return error_ != 0; }
 
-    // Flushes, syncs and renames. Errors (status output): disk full, folder gone.
+    // Everything written so far is on the disk, but not yet under its name: of several files that belong together, flush
+    // all before the first commit(). Errors (status output): disk full.
+    Status flush();
+
+    // Flushes and renames. Errors (status output): disk full, folder gone.
     Status commit();
 
 private:

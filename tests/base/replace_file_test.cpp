@@ -12,6 +12,7 @@
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <string>
 
 using namespace lyr;
 namespace fs = std::filesystem;
@@ -66,6 +67,45 @@ TEST_CASE("replace file 1: the old file stands until the new one is whole") {
     CHECK(file->commit());
     CHECK(text_of(path) == "new");
     CHECK(entries(folder) == 1);
+}
+
+TEST_CASE("replace file 1: flushed is not committed") {
+    const fs::path folder = fresh_folder("flush"), path = folder / "out";
+    std::ofstream(path) << "old";
+    auto file = ReplaceFile::open(path);
+    REQUIRE(file);
+    file->write("new ");
+    CHECK(file->flush());
+    CHECK(text_of(path) == "old");
+    file->write("text");
+    CHECK_FALSE(file->failed());
+    CHECK(file->commit());
+    CHECK(text_of(path) == "new text");
+}
+
+TEST_CASE("replace file 5: a file that is replaced hands its permissions on") {
+    const fs::path folder = fresh_folder("permissions"), path = folder / "out";
+    for (const auto permissions : {fs::perms{0600}, fs::perms{0755}, fs::perms{0666}}) {
+        std::ofstream(path) << "old";
+        fs::permissions(path, permissions);
+        auto file = ReplaceFile::open(path);
+        REQUIRE(file);
+        CHECK(file->commit());
+        CHECK(fs::status(path).permissions() == permissions);
+    }
+}
+
+TEST_CASE("replace file: a leftover under the temporary name is not written into") {
+    const fs::path folder = fresh_folder("leftover"), path = folder / "out";
+    std::ofstream(folder / "other") << "other";
+    fs::create_symlink("other", path.string() + '.' + std::to_string(::getpid()) + ".part");
+    auto file = ReplaceFile::open(path);
+    REQUIRE(file);
+    file->write("new");
+    CHECK(file->commit());
+    CHECK(text_of(folder / "other") == "other");
+    CHECK(text_of(path) == "new");
+    CHECK(entries(folder) == 2);
 }
 
 TEST_CASE("replace file 2: what is not committed is removed, an exception included") {
@@ -174,7 +214,7 @@ TEST_CASE("replace file 4: a link that cannot be followed is an error and stays"
     CHECK(entries(folder) == 3);
 }
 
-TEST_CASE("replace file 5: the first failure is reported, however much is written after it") {
+TEST_CASE("replace file 6: the first failure is reported, however much is written after it") {
     for (const std::size_t bytes : {std::size_t{1}, std::size_t{1} << 16, std::size_t{1} << 22}) {
         CAPTURE(bytes);
         auto full = ReplaceFile::open("/dev/full");
