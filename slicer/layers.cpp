@@ -1,5 +1,10 @@
 #include "slicer/layers.h"
 
+#include <exception>
+#include <mutex>
+#include <system_error>
+#include <thread>
+
 namespace lyr::slicer {
 
 std::vector<double> layer_middles(double part_height_mm, double layer_height_mm) {
@@ -30,6 +35,29 @@ SectionFigures figures_of(const Section& section) {
 
 unsigned thread_count(const Options& options) {
     return options.threads ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+}
+
+void on_threads(unsigned threads, const std::function<void()>& work) {
+    std::exception_ptr thrown;
+    std::mutex lock;
+    const auto guarded = [&] {
+        try {
+            work();
+        } catch (...) {
+            const std::lock_guard held(lock);
+            if (!thrown) thrown = std::current_exception();
+        }
+    };
+    {
+        std::vector<std::jthread> helpers;
+        try {
+            while (helpers.size() + 1 < threads) helpers.emplace_back(guarded);
+        } catch (const std::system_error&) {
+            // No more threads to be had.
+        }
+        guarded();
+    }
+    if (thrown) std::rethrow_exception(thrown);
 }
 
 }  // namespace lyr::slicer

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
-#include <thread>
+#include <functional>
 #include <vector>
 
 #include "slicer/slicer.h"
@@ -19,6 +19,10 @@ SectionFigures figures_of(const Section& section);
 
 unsigned thread_count(const Options& options);
 
+// Calls work() on so many threads, this one among them. Where the system gives fewer threads,
+// those that are there have to do. Whatever is thrown is thrown on, once all have ended.
+void on_threads(unsigned threads, const std::function<void()>& work);
+
 // Calls make(i) for i < count on `threads` threads and take(i, result) in order of i, on this thread.
 // Batches keep no more than a few results a thread waiting. take() may return false to stop.
 template <class Make, class Take>
@@ -29,13 +33,9 @@ bool in_order(std::size_t count, unsigned threads, Make make, Take take) {
         const std::size_t size = std::min(count - first, batch_per_thread * threads);
         std::vector<Item> items(size);
         std::atomic<std::size_t> next{0};
-        const auto run = [&] {
+        on_threads(static_cast<unsigned>(std::min<std::size_t>(threads, size)), [&] {
             for (std::size_t i; (i = next.fetch_add(1)) < size;) items[i] = make(first + i);
-        };
-        std::vector<std::jthread> helpers;
-        for (unsigned t = 1; t < threads; ++t) helpers.emplace_back(run);
-        run();
-        helpers.clear();
+        });
         for (std::size_t i = 0; i < size; ++i) {
             if (!take(first + i, std::move(items[i]))) return false;
         }

@@ -2,6 +2,7 @@
 // written in order.
 
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <optional>
 
@@ -19,6 +20,9 @@ namespace {
 
 // The format asks for arcs of at most this; wider ones are written as two.
 constexpr double widest_arc_rad = 1.5 * std::numbers::pi;
+
+// No printer of this kind is larger, and fill and layers are as many as the part is large.
+constexpr double largest_print_mm = 10'000;
 
 // Rounding moves a point of an arc by at most this many quanta (format/writer.h, contract 1).
 constexpr double quanta_off = 1.3;
@@ -156,6 +160,23 @@ void count(const SectionFigures& figures, Summary& summary) {
     summary.arcs += figures.arcs;
 }
 
+Status check_size(const Eigen::AlignedBox3d& box, double layer_height_mm) {
+    const auto error = [](const std::string& message) {
+        return Diagnostic{Severity::error, ExitStatus::geometry, message, {}};
+    };
+    const Vector3 size_mm = box.sizes();
+    if (size_mm.maxCoeff() > largest_print_mm) {
+        char size[80];
+        std::snprintf(size, sizeof size, "%.5g x %.5g x %.5g m", size_mm.x() / 1000,
+                      size_mm.y() / 1000, size_mm.z() / 1000);
+        return error(std::string("the part is ") + size +
+                     ", more than the 10 m that are printed: is the file's length unit wrong?");
+    }
+    if (layer_middles(size_mm.z(), layer_height_mm).empty())
+        return error("the part is lower than half a layer: nothing to print");
+    return Done{};
+}
+
 Model on_bed(Model model, const Options& options, Eigen::AlignedBox3d& box) {
     box = bounding_box(model, options.tolerance);
     const Vector3 move(options.bed_position_mm.x() - box.min().x(),
@@ -179,13 +200,9 @@ Result<Summary> print(Model model, const std::string& source_name, const std::st
                       const Progress& progress, Diagnostics& diagnostics) {
     Summary summary{.solids = model.solids.size(), .faces = model.faces.size()};
     const Model placed = on_bed(std::move(model), options, summary.box);
+    if (Status checked = check_size(summary.box, options.layer_height_mm); !checked)
+        return checked.error();
     const auto middles = layer_middles(summary.box.sizes().z(), options.layer_height_mm);
-    if (middles.empty()) {
-        return Diagnostic{Severity::error,
-                          ExitStatus::geometry,
-                          "the part is lower than half a layer: nothing to print",
-                          {}};
-    }
     const format::Quantum quantum = quantum_for(options.tolerance);
     auto writer = format::Writer::create(lyr_path, quantum, metadata(source_name, options));
     if (!writer) return writer.error();
@@ -222,11 +239,14 @@ Result<Summary> print(Model model, const std::string& source_name, const std::st
         });
     if (failed) return *failed;
     if (report) {
-        if (Status written = report->commit(); !written) return written.error();
+        if (Status written = report->flush(); !written) return written.error();
     }
     auto totals = writer->finish();
     if (!totals) return totals.error();
     summary.bytes = totals->bytes;
+    if (report) {
+        if (Status written = report->commit(); !written) return written.error();
+    }
     return summary;
 }
 

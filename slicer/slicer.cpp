@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/read_text.h"
+#include "kernel/brep/extent.h"
 #include "kernel/brep/placement.h"
 #include "parser/import/import.h"
 #include "parser/part21/part21.h"
@@ -34,7 +35,8 @@ Result<Model> load(const std::string& step_path, const Options& options, Diagnos
     diagnostics.insert(diagnostics.end(), file->diagnostics().begin(), file->diagnostics().end());
     Diagnostics found;
     auto model = importer::import_model(*file, found);
-    const Status mended = model ? mend(*model, options, found) : Status(Done{});
+    Status mended = model ? check_extent(*model) : Status(Done{});
+    if (model && mended) mended = mend(*model, options, found);
     for (Diagnostic& diagnostic : found) diagnostics.push_back(in_file(diagnostic, *file));
     if (!model) return model.error();
     if (!mended) return in_file(mended.error(), *file);

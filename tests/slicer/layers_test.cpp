@@ -4,7 +4,7 @@
 
 #include <cmath>
 #include <fstream>
-#include <thread>
+#include <new>
 
 using namespace lyr;
 using namespace lyr::slicer;
@@ -37,6 +37,23 @@ TEST_CASE("slicer 2: work on any number of threads is taken in order") {
         CHECK(!in_order(
             500, threads, [](std::size_t i) { return i; },
             [](std::size_t i, std::size_t) { return i < 100; }));
+    }
+}
+
+TEST_CASE("slicer: what a thread throws is thrown on, on any number of threads") {
+    for (const unsigned threads : {1u, 2u, 7u, 1024u}) {
+        std::atomic<int> made = 0;
+        CHECK_THROWS_AS(in_order(
+                            500, threads,
+                            [&](std::size_t i) {
+                                ++made;
+                                if (i % 50 == 49) throw std::bad_alloc();
+                                return i;
+                            },
+                            [](std::size_t, std::size_t) { return true; }),
+                        std::bad_alloc);
+        CHECK(made >= 1);
+        CHECK(made <= 500);
     }
 }
 
