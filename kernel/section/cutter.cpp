@@ -445,19 +445,20 @@ void Cutter::stitch(Work& work) const {
     }
 }
 
-void Cutter::check_areas(Work& work) const {
-    for (const SolidSection& part : work.section.solids) {
+void Cutter::leave_out_contradictions(Work& work) const {
+    std::erase_if(work.section.solids, [&](const SolidSection& part) {
         double area = 0, length = 0;
         for (const Contour& contour : part.contours) {
             area += area_mm2(contour);
             length += length_mm(contour);
         }
-        if (area >= -tolerance_.total_mm * length) continue;
+        if (area >= -tolerance_.total_mm * length) return false;
         ++work.section.open;
         const Point2 at = some_point(part.contours.front());
         report(work, "the solid's section has a negative area: its faces contradict each other",
                model_[part.solid].source, {at.x(), at.y(), work.z_mm});
-    }
+        return true;
+    });
 }
 
 Section Cutter::cut(double z_mm) const {
@@ -476,7 +477,7 @@ Section Cutter::cut(double z_mm) const {
         }
         work.section.solids.back().contours.push_back(std::move(contour));
     }
-    check_areas(work);
+    leave_out_contradictions(work);
     return std::move(work.section);
 }
 

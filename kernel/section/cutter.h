@@ -38,7 +38,7 @@ struct Section {
     double z_mm = 0;
     std::vector<SolidSection> solids;  // those the plane meets, in the model's order
     // Ends that have no continuation, and solids whose area comes out negative: a face's part was taken for the rest
-    // of its surface, or the shell is inside out.
+    // of its surface, or the shell is inside out. Neither has contours here.
     std::uint32_t open = 0;
     Diagnostics diagnostics;
 };
@@ -91,7 +91,7 @@ private:
     const Containment& containment(FaceId face) const;
     bool holds(FaceId face, const SurfaceSection& section, int component, double z_mm) const;
     void stitch(Work& work) const;
-    void check_areas(Work& work) const;
+    void leave_out_contradictions(Work& work) const;
     void report(Work& work, std::string message, SourceId source, const Point3& point) const;
 
     const Model& model_;

@@ -111,8 +111,9 @@ void Tracker::pair_ends() {
         std::size_t starts = first, last = first;
         while (last < ends_.size() && ends_[last].cell == ends_[first].cell) ++last;
         while (starts < last && !ends_[starts].is_start) ++starts;
-        // As many start as end: the border of a cell rises as often as it falls.
-        for (std::size_t i = 0; first + i < starts; ++i) {
+        // As many start as end, for the border of a cell rises as often as it falls; or else a curve stays open, and is
+        // reported as that.
+        for (std::size_t i = 0; i < std::min(starts - first, last - starts); ++i) {
             const CellEnd &end = ends_[first + i], &start = ends_[starts + i];
             curve_from_[start.crossing] = static_cast<std::uint32_t>(cell_curves_.size());
             reached_[end.crossing] = true;

@@ -146,7 +146,7 @@ TEST_CASE("cutter 2, 3: in every position the areas of closed contours add up to
     }
 }
 
-TEST_CASE("cutter 3: a solid that is inside out has the same contours the other way round, and is reported") {
+TEST_CASE("cutter 3: a solid that is inside out is reported and left out") {
     const Tolerance tolerance{0.005};
     for (const Case& solid : solids()) {
         CAPTURE(solid.name);
@@ -160,7 +160,7 @@ TEST_CASE("cutter 3: a solid that is inside out has the same contours the other 
             CHECK(a.open == 0);
             CHECK(b.open == (area_of(a) > tolerance.total_mm * length_of(a) ? 1 : 0));
             CHECK(b.diagnostics.size() == b.open);
-            CHECK(std::abs(area_of(a) + area_of(b)) <= 0.005 * length_of(a));
+            if (b.open > 0) CHECK(b.solids.empty());
         }
     }
 }
