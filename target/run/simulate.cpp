@@ -58,7 +58,7 @@ public:
     SimulationReport report() const;
 
 private:
-    Status pump(Executor& executor);
+    Status pump(Executor& executor, ReplaceFile* trace);
     bool asked_to_stop(const Executor& executor) const;
 
     const SimulationJob& job_;
@@ -80,7 +80,7 @@ Status Simulation::run(ReplaceFile* trace) {
     gpio::GpioChip& chip = tracing ? static_cast<gpio::GpioChip&>(*tracing) : mock_;
     const StopRequests none{0};
     Executor executor(chip, clock_, executor_timing(job_.printer), none);
-    Status pumped = pump(executor);
+    Status pumped = pump(executor, trace);
     print_time_s_ = static_cast<double>(executor.time_ns()) / ns_per_s;
     if (!pumped) return pumped;
     path_check_.finish(decoder_.positions());
@@ -91,7 +91,7 @@ Status Simulation::run(ReplaceFile* trace) {
     return released;
 }
 
-Status Simulation::pump(Executor& executor) {
+Status Simulation::pump(Executor& executor, ReplaceFile* trace) {
     std::vector<LineEvent> events;
     for (std::uint64_t batch = 0;; ++batch) {
         events.clear();
@@ -101,7 +101,9 @@ Status Simulation::pump(Executor& executor) {
         const Result<bool> executed = executor.execute(events);
         if (!executed) return executed.error();
         if (!*more) return Done{};
-        if (batch % batches_between_questions == 0 && asked_to_stop(executor)) return stopped();
+        if (batch % batches_between_questions != 0) continue;
+        if (trace && trace->failed()) return trace->flush();
+        if (asked_to_stop(executor)) return stopped();
     }
 }
 

@@ -3,7 +3,7 @@
 //
 // Contract
 //  1. From construction to destruction the three signals are blocked in the calling thread and in all
-//     threads that it starts.
+//     threads that it starts; those that are ignored, as under nohup(1), stay ignored.
 //  2. wait_ms(t) returns true as soon as one of them arrives, and false after t milliseconds without;
 //     each arrival is told once.
 

@@ -200,6 +200,18 @@ TEST_CASE("stop signals 1, 2: an arrival is told once and kills nothing") {
     std::raise(SIGTERM);  // fetched by the destructor
 }
 
+TEST_CASE("stop signals 1: a signal that is ignored stays ignored") {
+    const auto before = std::signal(SIGHUP, SIG_IGN);
+    {
+        const StopSignals signals;
+        std::raise(SIGHUP);
+        CHECK_FALSE(signals.wait_ms(0));
+        std::raise(SIGINT);
+        CHECK(signals.wait_ms(0));
+    }
+    std::signal(SIGHUP, before);
+}
+
 TEST_CASE("event ring 1, 3: everything comes out once and in order, between two threads") {
     EventRing ring(256);
     constexpr std::int64_t count = 200'000;
