@@ -18,7 +18,7 @@ CTEST   = ctest --output-on-failure -j $(JOBS)
 
 all: setup
 	cmake -S . -B $(BUILD) -DCMAKE_BUILD_TYPE=Release
-	cmake --build $(BUILD) -j $(JOBS)
+	cmake --build $(BUILD) -j $(JOBS) --target stepc lyrrun lyrview
 
 setup:
 	@tools/setup
@@ -31,6 +31,7 @@ demo: all
 	@echo "The picture: demo/layer-36.svg"
 
 test: all board
+	cmake --build $(BUILD) -j $(JOBS)
 	cd $(BUILD) && $(CTEST)
 
 sanitize: setup
