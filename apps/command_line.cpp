@@ -11,6 +11,8 @@
 #include <csignal>
 #include <cstdio>
 #include <limits>
+#include <new>
+#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -137,6 +139,8 @@ int run_main(const Program& program, int argc, char** argv,
         if (!parsed) return fail(program, parsed.error());
         const Status done = *parsed ? work(app) : Status(Done{});
         return done ? static_cast<int>(ExitStatus::ok) : fail(program, done.error());
+    } catch (const std::bad_alloc&) {
+        return fail(program, {Severity::error, ExitStatus::internal, "out of memory", {}});
     } catch (const std::exception& error) {
         return fail(program, {Severity::error, ExitStatus::internal, error.what(), {}});
     }
@@ -146,12 +150,23 @@ Diagnostic usage(const std::string& message) {
     return {Severity::error, ExitStatus::usage, message, {}};
 }
 
+std::vector<std::size_t> most_telling(const Diagnostics& diagnostics, std::size_t most) {
+    std::vector<std::size_t> chosen(diagnostics.size());
+    std::iota(chosen.begin(), chosen.end(), std::size_t{0});
+    std::stable_sort(chosen.begin(), chosen.end(), [&](std::size_t a, std::size_t b) {
+        return diagnostics[a].severity > diagnostics[b].severity;
+    });
+    chosen.resize(std::min(chosen.size(), most));
+    std::sort(chosen.begin(), chosen.end());
+    return chosen;
+}
+
 void show(const Program& program, const Diagnostics& diagnostics) {
-    for (std::size_t i = 0; i < diagnostics.size() && i < most_shown; ++i)
-        show(program, diagnostics[i]);
-    if (diagnostics.size() > most_shown)
+    const std::vector<std::size_t> shown = most_telling(diagnostics, most_shown);
+    for (const std::size_t i : shown) show(program, diagnostics[i]);
+    if (diagnostics.size() > shown.size())
         std::fprintf(stderr, "%s: ... and %zu more\n", program.name,
-                     diagnostics.size() - most_shown);
+                     diagnostics.size() - shown.size());
 }
 
 CLI::Option* add_file(CLI::App& app, const std::string& option, std::string& path,

@@ -7,6 +7,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "base/diagnostic.h"
 
@@ -27,7 +28,10 @@ int run_main(const Program& program, int argc, char** argv,
 // Options that make no sense.
 Diagnostic usage(const std::string& message);
 
-// On standard error, one line each, as far as anyone reads on.
+// Which to show where not all can be: errors before warnings before notes, the first of each. In their order.
+std::vector<std::size_t> most_telling(const Diagnostics& diagnostics, std::size_t most);
+
+// The most telling of them on standard error, one line each, and how many more there are.
 void show(const Program& program, const Diagnostics& diagnostics);
 
 // The options below refuse what is not of their kind, and say what they expect.

@@ -60,6 +60,7 @@ private:
     bool layer_is_whole(const BlockHead& head);
     std::optional<std::span<const std::byte>> payload(const BlockHead& head);
     bool read_on_to_layer(std::uint32_t index);
+    bool fail_cut_short(std::uint64_t offset);
     bool fail_no_layer(std::uint32_t index, std::uint32_t layers);
     std::optional<std::uint64_t> find_layer(std::uint32_t index, std::uint64_t file_bytes);
     bool find_index(std::uint64_t file_bytes, BlockHead& head, std::uint32_t& layers);

@@ -8,11 +8,11 @@ bool Reader::Implementation::find_index(std::uint64_t file_bytes, BlockHead& hea
                                         std::uint32_t& layers) {
     constexpr std::size_t end_bytes = block_frame_bytes + end_payload_bytes;
     if (file_bytes < end_bytes || !blocks_.seek(file_bytes - end_bytes))
-        return fail("the file has no end block", file_bytes);
+        return fail_cut_short(file_bytes);
     const std::optional<BlockHead> end = blocks_.head();
     if (!end) return fail_fault(blocks_.offset());
     if (!is(*end, BlockType::end) || end->length != end_payload_bytes)
-        return fail("the file has no end block", end->offset);
+        return fail_cut_short(end->offset);
     const auto bytes = payload(*end);
     if (!bytes) return false;
     layers = get_u32(bytes->data());
@@ -23,6 +23,13 @@ bool Reader::Implementation::find_index(std::uint64_t file_bytes, BlockHead& hea
         return fail("the file has no index", index->offset);
     head = *index;
     return true;
+}
+
+bool Reader::Implementation::fail_cut_short(std::uint64_t offset) {
+    return fail(
+        "the file is cut short: it has no end block to find layers by; lyrview --info tells "
+        "how far it is whole",
+        offset);
 }
 
 std::optional<std::uint64_t> Reader::Implementation::find_layer(std::uint32_t index,

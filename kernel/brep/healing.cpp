@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/text.h"
 #include "kernel/brep/assembly.h"
 #include "kernel/brep/defect.h"
 #include "kernel/brep/face_parity.h"
@@ -41,10 +42,10 @@ public:
         }
         number_ += number;
     }
-    void report(const char* what, Diagnostics& diagnostics) const {
+    void report(const char* noun, const char* what, Diagnostics& diagnostics) const {
         if (number_ == 0) return;
         diagnostics.push_back(
-            defect(Severity::note, std::to_string(number_) + what, source_, point_));
+            defect(Severity::note, counted(number_, noun) + what, source_, point_));
     }
 
 private:
@@ -57,10 +58,9 @@ void drop_edges_without_length(Model& model, Diagnostics& diagnostics) {
     const std::vector<EdgeId> edges = edges_within(model, resolution_mm);
     if (edges.empty()) return;
     const Edge& first = model[edges.front()];
-    diagnostics.push_back(
-        defect(Severity::note,
-               std::to_string(edges.size()) + " edges have no length and have been left out",
-               first.source, model[first.start].point));
+    diagnostics.push_back(defect(Severity::note,
+                                 counted(edges.size(), "edge") + " without length left out",
+                                 first.source, model[first.start].point));
     drop_edges(model, edges);
 }
 
@@ -80,8 +80,7 @@ void turn_loops(Model& model, const std::vector<bool>& in_doubt, Diagnostics& di
         const Face& face = model.faces[f];
         if (in_doubt[face.shell.value]) turned.add(model, face, make_loops_agree(model, FaceId{f}));
     }
-    turned.report(" loops ran against the others of their face and have been turned round",
-                  diagnostics);
+    turned.report("loop", " that ran against the others of the face turned round", diagnostics);
 }
 
 // In each group of faces that hang together, those in the minority.
@@ -101,7 +100,7 @@ void turn_faces(Model& model, const std::vector<bool>& in_doubt, const FaceParit
         turned.add(model, model[id]);
         reverse_face(model, id);
     }
-    turned.report(" faces looked the other way than their neighbours and have been turned over",
+    turned.report("face", " that looked the other way than the neighbours turned over",
                   diagnostics);
 }
 
@@ -159,9 +158,9 @@ void orient_closed_shells(Model& model, std::vector<bool> in_doubt, double limit
         // A sheet and its double close as well, but thinner than a gap is no solid.
         if (std::abs(found.volume_mm3) > limit_mm * found.area_mm2 / 2) shell.is_surface = false;
     }
-    senses.report(" faces have a same_sense that contradicts their loops; the loops are taken",
+    senses.report("face", " with a same_sense that contradicts the loops; the loops are taken",
                   diagnostics);
-    shells.report(" shells were stated inside out and have been turned around", diagnostics);
+    shells.report("shell", " stated inside out turned around", diagnostics);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "base/text.h"
 #include "kernel/brep/defect.h"
 #include "kernel/brep/edge_matching.h"
 #include "kernel/brep/edge_splitting.h"
@@ -61,8 +62,8 @@ void report_sewn(const std::vector<Seam>& seams, Diagnostics& diagnostics) {
                          [](const Seam& a, const Seam& b) { return a.gap_mm < b.gap_mm; });
     diagnostics.push_back(
         defect(Severity::note,
-               "faces that meet do not share their edges: " + std::to_string(seams.size()) +
-                   " edges have been sewn, the widest gap, here, is " + in_mm(widest->gap_mm),
+               "faces that meet do not share their edges: " + counted(seams.size(), "edge") +
+                   " sewn, the widest gap, here, is " + in_mm(widest->gap_mm),
                widest->edge, widest->point));
 }
 

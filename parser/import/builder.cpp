@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/text.h"
 #include "kernel/brep/edge_builder.h"
 #include "kernel/brep/volume.h"
 #include "kernel/geometry/tolerance.h"
@@ -150,8 +151,8 @@ void Builder::orient_last_shell(const ShellRecord& record, bool is_void, bool is
         orient_closed_shell(model_, ShellId(model_.shells.size() - 1), is_void);
     if (found.faces_turned > 0) {
         add_note(record.shell,
-                 std::to_string(found.faces_turned) +
-                     " faces have a same_sense that contradicts their loops; the loops are taken");
+                 counted(found.faces_turned, "face") +
+                     " with a same_sense that contradicts the loops; the loops are taken");
     }
     if (found.is_reversed && is_stated) {
         add_note(record.shell, "it is stated inside out and has been turned around");

@@ -81,6 +81,16 @@ TEST_CASE("lyrview: the picture never takes the place of the print") {
     CHECK(text_of(folder / "a.lyr") == before);
 }
 
+TEST_CASE("lyrview: a layer of a file that is cut short is refused with what to do") {
+    const Folder folder = with_print("lyrview-cut");
+    const std::string whole = text_of(folder / "a.lyr");
+    folder.write("cut.lyr", whole.substr(0, whole.size() - 40));
+    check_failure(folder.run("lyrview cut.lyr --layer 1 -o x.svg"), 3,
+                  "cut short: it has no end block to find layers by; lyrview --info tells");
+    check_failure(folder.run("lyrview cut.lyr --info"), 3, "the last whole layer is 3");
+    CHECK_FALSE(fs::exists(folder / "x.svg"));
+}
+
 TEST_CASE("lyrview: a link as output stays, also one to a file that is not there yet") {
     const Folder folder = with_print("lyrview-link");
     fs::create_symlink("2.svg", folder / "link");

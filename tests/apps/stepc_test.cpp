@@ -2,6 +2,7 @@
 
 #include <cctype>
 
+#include "apps/command_line.h"
 #include "apps/program.h"
 
 using namespace lyr::tests;
@@ -99,6 +100,34 @@ TEST_CASE("stepc: the length of --up does not matter") {
         CHECK(folder.run("stepc p.step -o b.lyr --up " + std::string(up)).status == 0);
         CHECK(text_of(folder / "a.lyr") == text_of(folder / "b.lyr"));
     }
+}
+
+TEST_CASE("stepc: a part in the wrong unit is refused with its size, and so is a damaged point") {
+    const Folder folder = with_part("stepc-unit");
+    const std::string part = text_of(folder / "p.step");
+    const auto with = [&](const std::string& old, const std::string& by) {
+        std::string changed = part;
+        const std::size_t at = changed.find(old);
+        REQUIRE(at != part.npos);
+        folder.write("q.step", changed.replace(at, old.size(), by));
+    };
+    with("SI_UNIT($,.METRE.)", "SI_UNIT(.KILO.,.METRE.)");
+    check_failure(folder.run("stepc q.step"), 5, "is the file's length unit wrong?");
+    with("SI_UNIT($,.METRE.)", "SI_UNIT(.EXA.,.METRE.)");
+    check_failure(folder.run("stepc q.step"), 5, "more than 1 km from the origin");
+    CHECK(folder.files() == std::set<std::string>{"p.step", "q.step", "z"});
+}
+
+TEST_CASE("stepc: errors are shown before warnings, and as many as can be read") {
+    lyr::Diagnostics found(50, {lyr::Severity::warning, lyr::ExitStatus::geometry, "small", {}});
+    found[40] = {lyr::Severity::error, lyr::ExitStatus::geometry, "grave", {}};
+    found[3].severity = lyr::Severity::note;
+    const auto shown = lyr::command_line::most_telling(found, 20);
+    REQUIRE(shown.size() == 20);
+    CHECK(shown.back() == 40);
+    CHECK(std::is_sorted(shown.begin(), shown.end()));
+    CHECK(std::find(shown.begin(), shown.end(), 3) == shown.end());
+    CHECK(lyr::command_line::most_telling(found, 100).size() == 50);
 }
 
 TEST_CASE("stepc: an empty name is no file") {

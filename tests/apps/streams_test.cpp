@@ -108,6 +108,8 @@ TEST_CASE("stepc: output that cannot be written is status 6, says why and leaves
     refused("stepc p.step -o /dev/full", "No space left on device");
     refused("stepc p.step -o - > /dev/full", "standard output: error: cannot write: No space");
     refused("stepc p.step -o /dev/null --report /dev/full", "No space left on device");
+    refused("stepc p.step -o a.lyr --report /dev/full", "No space left on device");
+    refused("stepc p.step -o /dev/full --report a.jsonl", "No space left on device");
     refused("stepc p.step -o /dev/null > /dev/full", "No space left on device");
     refused("stepc p.step -o - >&-", "standard output");
     refused("stepc --help > /dev/full", "No space left on device");
