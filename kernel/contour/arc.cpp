@@ -93,16 +93,13 @@ Point2 point_at(const Point2& start, const Segment& segment, double fraction) {
     return start + scale * rotated(chord, -half * (1 - fraction));
 }
 
-double offset_mm(const Point2& start, const Segment& segment, const Point2& point) {
-    // With curvature k, q from the start and q.n along the right normal, the distance to the centre over the
-    // radius is sqrt(1 + 2 k q.n + k^2 q^2); rationalised, less one and over k, it is defined for k = 0 too.
+Carrier carrier_of(const Point2& start, const Segment& segment) {
     const double half_chord = (segment.end - start).norm() / 2, s = segment.sagitta_mm;
-    const double curvature = 2 * s / (half_chord * half_chord + s * s);
-    const Vector2 offset = point - start;
-    const double right = cross(offset, start_tangent(start, segment));
-    const double square = curvature * offset.squaredNorm();
-    const double ratio2 = 1 + curvature * (2 * right + square);
-    return (2 * right + square) / (1 + std::sqrt(std::max(0.0, ratio2)));
+    return {start, start_tangent(start, segment), 2 * s / (half_chord * half_chord + s * s)};
+}
+
+double offset_mm(const Point2& start, const Segment& segment, const Point2& point) {
+    return offset_mm(carrier_of(start, segment), point);
 }
 
 double distance_mm(const Point2& start, const Segment& segment, const Point2& point) {

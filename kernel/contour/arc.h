@@ -9,6 +9,7 @@
 
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -51,7 +52,24 @@ Vector2 end_tangent(const Point2& start, const Segment& segment);
 // The point at a fraction (0..1) of the segment's length.
 Point2 point_at(const Point2& start, const Segment& segment, double fraction);
 
-// The signed distance of a point to the segment's whole line or circle: positive to the right of it.
+// A segment's whole line or circle. Measuring many points against it needs the square root of one only.
+struct Carrier {
+    Point2 start;
+    Vector2 tangent;
+    double curvature_per_mm;  // positive: the centre lies to the left
+};
+Carrier carrier_of(const Point2& start, const Segment& segment);
+
+// The signed distance of a point to it: positive to the right.
+inline double offset_mm(const Carrier& carrier, const Point2& point) {
+    // With curvature k, q from the start and q.n along the right normal, the distance to the centre over the
+    // radius is sqrt(1 + 2 k q.n + k^2 q^2); rationalised, less one and over k, it is defined for k = 0 too.
+    const Vector2 offset = point - carrier.start;
+    const double right = cross(offset, carrier.tangent);
+    const double square = carrier.curvature_per_mm * offset.squaredNorm();
+    const double ratio2 = 1 + carrier.curvature_per_mm * (2 * right + square);
+    return (2 * right + square) / (1 + std::sqrt(std::max(0.0, ratio2)));
+}
 double offset_mm(const Point2& start, const Segment& segment, const Point2& point);
 
 // The distance of a point to the segment.

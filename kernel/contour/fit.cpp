@@ -55,17 +55,32 @@ std::optional<Biarc> biarc_between(const CurvePoint& from, const CurvePoint& to)
                  {to.point, -sagitta_from_tangent(middle - to.point, -to.tangent)}};
 }
 
+// Measures points against a biarc: each against the arc on whose side of the joint it lies.
+class BiarcGauge {
+public:
+    BiarcGauge(const Point2& start, const Biarc& biarc)
+        : first_(carrier_of(start, biarc.first)),
+          second_(carrier_of(biarc.first.end, biarc.second)),
+          along_joint_(end_tangent(start, biarc.first)) {}
+
+    double offset_mm(const Point2& point) const {
+        const bool first = (point - second_.start).dot(along_joint_) < 0;
+        return lyr::offset_mm(first ? first_ : second_, point);
+    }
+
+private:
+    Carrier first_, second_;
+    Vector2 along_joint_;
+};
+
 // The greatest deviation of the curve from the biarc between two parameters.
 double deviation_mm(const PlaneCurve& curve, double from, double to, const Point2& start,
                     const Biarc& biarc) {
-    const Point2& middle = biarc.first.end;
-    const Vector2 across = end_tangent(start, biarc.first);
+    const BiarcGauge gauge(start, biarc);
     std::array<double, fit_samples + 2> off{};  // zero at both ends
     for (int i = 1; i <= fit_samples; ++i) {
         const Point2 point = curve(from + (to - from) * i / (fit_samples + 1)).point;
-        off[static_cast<std::size_t>(i)] = (point - middle).dot(across) < 0
-                                               ? offset_mm(start, biarc.first, point)
-                                               : offset_mm(middle, biarc.second, point);
+        off[static_cast<std::size_t>(i)] = gauge.offset_mm(point);
     }
     double worst = 0;
     for (std::size_t i = 1; i + 1 < off.size(); ++i) {
@@ -140,18 +155,12 @@ void fit_arcs(const PlaneCurve& curve, double from, double to, const Point2& sta
 
 namespace {
 
-// The greatest distance of the points strictly between two of them from a biarc between these.
-double deviation_mm(std::span<const CurvePoint> points, const Biarc& biarc) {
-    const Point2 &start = points.front().point, &middle = biarc.first.end;
-    const Vector2 across = end_tangent(start, biarc.first);
-    double worst = 0;
-    for (std::size_t i = 1; i + 1 < points.size(); ++i) {
-        const Point2& point = points[i].point;
-        const bool first = (point - middle).dot(across) < 0;
-        worst = std::max(worst, std::abs(first ? offset_mm(start, biarc.first, point)
-                                               : offset_mm(middle, biarc.second, point)));
-    }
-    return worst;
+// Whether the points strictly between two of them are as near to a biarc between these as is allowed.
+bool holds(const Biarc& biarc, std::span<const CurvePoint> points, double allowed_mm) {
+    const BiarcGauge gauge(points.front().point, biarc);
+    return std::all_of(points.begin() + 1, points.end() - 1, [&](const CurvePoint& p) {
+        return std::abs(gauge.offset_mm(p.point)) <= allowed_mm;
+    });
 }
 
 struct PointReach {
@@ -167,7 +176,7 @@ std::optional<PointReach> longest_biarc(std::span<const CurvePoint> points, std:
     for (std::size_t target = std::clamp<std::size_t>(guess, 1, points.size() - 1);
          good + 1 < bad;) {
         const auto biarc = biarc_between(points.front(), points[target]);
-        if (biarc && deviation_mm(points.first(target + 1), *biarc) <= allowed_mm) {
+        if (biarc && holds(*biarc, points.first(target + 1), allowed_mm)) {
             best = PointReach{*biarc, target};
             good = target;
         } else {

@@ -132,6 +132,37 @@ Partials partials(const BezierPatch& patch, const Point2& uv) {
             (by_v.head<3>() - by_v.w() * at) / (point.w() * width_v)};
 }
 
+// The error of cubic Hermite interpolation is the fourth derivative / 4! times the square of t (1 - t), so at most / 384; the
+// fourth derivative lies in the hull of n (n - 1) (n - 2) (n - 3) times the fourth differences.
+QuarticPart quartic_part(const BezierPatch& patch) {
+    const Eigen::Vector4d& first = patch.control_points.front();
+    const Point3 origin = first.head<3>() / first.w();
+    double reach = 0, least_weight = first.w();
+    for (const Eigen::Vector4d& control : patch.control_points) {
+        reach = std::max(reach, (control.head<3>() / control.w() - origin).norm());
+        least_weight = std::min(least_weight, control.w());
+    }
+    const auto columns = static_cast<std::size_t>(patch.degree_v) + 1;
+    const auto largest = [&](std::size_t stride, int degree, std::size_t lines,
+                             std::size_t line_stride) {
+        double most = 0;
+        for (std::size_t line = 0; line < lines; ++line) {
+            for (int i = 0; i + 4 <= degree; ++i) {
+                const auto* c =
+                    &patch.control_points[line * line_stride + static_cast<std::size_t>(i) * stride];
+                const Eigen::Vector4d d = c[0] - 4 * c[stride] + 6 * c[2 * stride] -
+                                          4 * c[3 * stride] + c[4 * stride];
+                // Of a quotient: that of the numerator, seen from the origin, and of the denominator.
+                most = std::max(most, (d.head<3>() - d.w() * origin).norm() + reach * std::abs(d.w()));
+            }
+        }
+        return degree * (degree - 1.0) * (degree - 2.0) * (degree - 3.0) * most /
+               (384 * least_weight);
+    };
+    const auto rows = static_cast<std::size_t>(patch.degree_u) + 1;
+    return {largest(columns, patch.degree_u, columns, 1), largest(1, patch.degree_v, rows, columns)};
+}
+
 IsoLine::IsoLine(const BezierPatch& patch, bool along_u, double fixed)
     : degree_(along_u ? patch.degree_u : patch.degree_v),
       from_(along_u ? patch.from_u : patch.from_v),

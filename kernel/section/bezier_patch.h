@@ -2,7 +2,8 @@
 //
 // Contract
 //  1. Parameters are global; those outside the patch continue its polynomials.
-//  2. IsoLine is the height along a parameter line of the patch.
+//  2. The quartic part is a bound, from fourth differences of the control points.
+//  3. IsoLine is the height along a parameter line of the patch.
 
 #pragma once
 
@@ -14,6 +15,13 @@
 namespace lyr {
 
 Partials partials(const BezierPatch& patch, const Point2& uv);
+
+// How far parameter lines over the whole width of the patch are from the cubics with their ends and end tangents, at most;
+// over a share of the width by the fourth power of the share less.
+struct QuarticPart {
+    double along_u_mm = 0, along_v_mm = 0;
+};
+QuarticPart quartic_part(const BezierPatch& patch);
 
 class IsoLine {
 public:

@@ -45,6 +45,7 @@ public:
     void build() {
         for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
             append_monotone_cells(mesh_.patches[p], static_cast<std::uint32_t>(p), mesh_.cells);
+            mesh_.quartic_parts.push_back(quartic_part(mesh_.patches[p]));
         }
         along_u_ = lines(true);
         along_v_ = lines(false);

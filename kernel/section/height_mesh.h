@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "kernel/geometry/bspline_surface.h"
+#include "kernel/section/bezier_patch.h"
 #include "kernel/section/interval_index.h"
 #include "kernel/section/monotone_cells.h"
 
@@ -40,6 +41,7 @@ struct BorderPiece {
 struct HeightMesh {
     std::shared_ptr<const BSplineSurface> surface;
     std::vector<BezierPatch> patches;
+    std::vector<QuarticPart> quartic_parts;  // of the patches
     std::vector<MonotoneCell> cells;
     std::vector<MeshVertex> vertices;
     std::vector<BorderPiece> pieces;

@@ -53,6 +53,8 @@ private:
     LevelCurve follow_from(std::uint32_t first_curve);
     void add_end(const BorderPiece& piece, std::int32_t cell, bool cell_is_left, bool rises,
                  double at, std::uint32_t crossing);
+    Vector2 extent(const CellCurve& curve) const;
+    double bend_mm(const CellCurve& curve) const;
     int first_spans(const CellCurve& curve, const CurvePoint& start, double chord_mm) const;
     void sample(const CellCurve& curve, LevelCurve& out) const;
     void refine(const CellCurve& curve, double from, const CurvePoint& start, double to,
@@ -219,16 +221,40 @@ void Tracker::refine(const CellCurve& curve, double from, const CurvePoint& star
     if (!fine) refine(curve, middle, at, to, end, depth + 1, true, out);
 }
 
+// Of a box in the parameters that holds the curve.
+Vector2 Tracker::extent(const CellCurve& curve) const {
+    const MonotoneCell& cell = mesh_.cells[static_cast<std::size_t>(curve.cell)];
+    Vector2 box = (curve.end.uv - curve.start.uv).cwiseAbs();
+    if (cell.kind == CellKind::graph_over_u)
+        box.y() = std::min(box.x() * cell.steepest, cell.to_v - cell.from_v);
+    if (cell.kind == CellKind::graph_over_v)
+        box.x() = std::min(box.y() * cell.steepest, cell.to_u - cell.from_u);
+    return box;
+}
+
+// How far the surface is from being bicubic where the curve runs, at most.
+double Tracker::bend_mm(const CellCurve& curve) const {
+    const MonotoneCell& cell = mesh_.cells[static_cast<std::size_t>(curve.cell)];
+    const BezierPatch& patch = mesh_.patches[cell.patch];
+    const QuarticPart& whole = mesh_.quartic_parts[cell.patch];
+    const Vector2 box = extent(curve);
+    const double share_u = box.x() / (patch.to_u - patch.from_u);
+    const double share_v = box.y() / (patch.to_v - patch.from_v);
+    return whole.along_u_mm * std::pow(share_u, 4) + whole.along_v_mm * std::pow(share_v, 4);
+}
+
 // Into how many spans a cell's curve is divided to begin with: one that comes back to where it began (a cell may go once
 // around a closed surface) has no chord to measure against.
 int Tracker::first_spans(const CellCurve& curve, const CurvePoint& start, double chord_mm) const {
     const MonotoneCell& cell = mesh_.cells[static_cast<std::size_t>(curve.cell)];
     if (cell.kind == CellKind::flat) return 0;
     // Ends and tangents alone do not tell of a bend between them: a curve of degree 4 can leave along its chord and
-    // arrive along it. With a point for every other degree none is left between two.
+    // arrive along it. With a point for every other degree none is left between two; nor are there any on spans that are
+    // nearly cubic, which goes with the fourth power of their length.
     const BezierPatch& patch = mesh_.patches[cell.patch];
-    const int degree = std::max(patch.degree_u, patch.degree_v);
-    const int spans = degree > 3 ? degree / 2 + 1 : 1;
+    const double cubic_spans = std::ceil(std::pow(bend_mm(curve) / (allowed_mm_ / 4), 0.25));
+    const int most = std::max(patch.degree_u, patch.degree_v) / 2 + 1;
+    const int spans = static_cast<int>(std::clamp(cubic_spans, 1.0, static_cast<double>(most)));
     if (chord_mm > farthest_from_chord_mm) return spans;
     const CurvePoint middle = point_at(patch, solve(curve, 0.5));
     const bool returns = (middle.point - start.point).norm() > std::max(chord_mm, resolution_mm);

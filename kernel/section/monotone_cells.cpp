@@ -44,6 +44,8 @@ struct Slopes {
         constexpr double most_variation = 32;
         return low > 0 ? high <= most_variation * low : high < 0 && low >= most_variation * high;
     }
+    double least() const { return std::min(std::abs(low), std::abs(high)); }
+    double most() const { return std::max(std::abs(low), std::abs(high)); }
     void add(double difference, bool first) {
         low = first ? difference : std::min(low, difference);
         high = first ? difference : std::max(high, difference);
@@ -186,14 +188,19 @@ double division(const HeightPatch& patch, bool along_u) {
 void divide(HeightPatch patch, std::uint32_t index, std::vector<MonotoneCell>& cells) {
     const Range range = height_range(patch);
     const Slopes u = slopes(patch, true, range), v = slopes(patch, false, range);
-    const auto emit = [&](CellKind kind) {
+    const auto emit = [&](CellKind kind, double steepest) {
         cells.push_back({patch.from_u, patch.to_u, patch.from_v, patch.to_v, kind, u.high > 0,
-                         v.high > 0, index});
+                         v.high > 0, index, steepest});
     };
-    if (v.steady()) return emit(CellKind::graph_over_u);
-    if (u.steady()) return emit(CellKind::graph_over_v);
-    if (u.one_sign() && v.one_sign()) return emit(CellKind::both);
-    if (range.high - range.low <= flat_cell_mm) return emit(CellKind::flat);
+    // Differences times these are derivatives.
+    const double by_u = patch.degree_u / (patch.to_u - patch.from_u);
+    const double by_v = patch.degree_v / (patch.to_v - patch.from_v);
+    if (v.steady())
+        return emit(CellKind::graph_over_u, by_u * u.most() / (by_v * v.least()));
+    if (u.steady())
+        return emit(CellKind::graph_over_v, by_v * v.most() / (by_u * u.least()));
+    if (u.one_sign() && v.one_sign()) return emit(CellKind::both, 0);
+    if (range.high - range.low <= flat_cell_mm) return emit(CellKind::flat, 0);
     const Bending bend = bending(patch);
     const bool along_u = bend.along_u > bend.along_v;
     const double t = division(patch, along_u);
@@ -201,7 +208,7 @@ void divide(HeightPatch patch, std::uint32_t index, std::vector<MonotoneCell>& c
     const double to = along_u ? patch.to_u : patch.to_v;
     const double at = from + t * (to - from);
     // No parameter is left between the borders: a fold in the surface's own parameters.
-    if (!(from < at && at < to)) return emit(CellKind::flat);
+    if (!(from < at && at < to)) return emit(CellKind::flat, 0);
     HeightPatch high = patch;
     std::vector<double> low_z, low_w;
     split_coefficients(patch, patch.z, along_u, t, low_z, high.z);

@@ -32,6 +32,8 @@ struct MonotoneCell {
     CellKind kind;
     bool rises_u, rises_v;  // of the derivatives that have one sign
     std::uint32_t patch;
+    // Of a graph over u, |dv/du| on its level curves is no greater; over v, |du/dv|.
+    double steepest;
 };
 
 // Appends the cells of a patch.
