@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "kernel/brep/parameter_loops.h"
-#include "kernel/brep/quadrature.h"
 
 namespace lyr {
 
@@ -64,8 +63,9 @@ Basis basis_at(const std::vector<double>& knots, int degree, std::size_t count, 
 // Integrals along lines of constant u, from the start of v.
 class Columns {
 public:
-    Columns(const BSplineSurface& surface, const Point3& c) : s_(surface) {
-        const auto borders = panel_borders(s_.knots_v, s_.start_v(), s_.end_v());
+    Columns(const BSplineSurface& surface, const Point3& c, const Fineness& fineness)
+        : s_(surface) {
+        const auto borders = panel_borders(s_.knots_v, s_.start_v(), s_.end_v(), fineness);
         for (std::size_t panel = 0; panel + 1 < borders.size(); ++panel) {
             const double width = borders[panel + 1] - borders[panel];
             for (std::size_t g = 0; g < gauss_at.size(); ++g) {
@@ -177,10 +177,12 @@ BSplineSurface transposed(const BSplineSurface& s) {
 
 class FaceIntegral {
 public:
-    FaceIntegral(const BSplineSurface& surface, std::vector<ParameterLoop> loops, const Point3& c)
+    FaceIntegral(const BSplineSurface& surface, std::vector<ParameterLoop> loops, const Point3& c,
+                 const Fineness& fineness)
         : s_(surface),
+          fineness_(fineness),
           loops_(std::move(loops)),
-          columns_(s_, c),
+          columns_(s_, c, fineness),
           period_(periods_of(s_)),
           pole_at_start_(pole_of(s_, true, false)),
           pole_at_end_(pole_of(s_, true, true)) {}
@@ -216,8 +218,8 @@ private:
                 is_first ? loop.nodes.back().uv : loop.nodes[passage.next_node - 1].uv;
             const Point2 to = is_first ? followed(loop.nodes.front().uv, from, period_)
                                        : loop.nodes[passage.next_node].uv;
-            const double width = (to.x() - from.x()) / most_panels;
-            for (int panel = 0; panel < most_panels; ++panel) {
+            const double width = (to.x() - from.x()) / fineness_.most;
+            for (int panel = 0; panel < fineness_.most; ++panel) {
                 for (std::size_t g = 0; g < gauss_at.size(); ++g) {
                     add({from.x() + (panel + gauss_at[g]) * width, s_.end_v()},
                         gauss_weight[g] * width);
@@ -241,7 +243,7 @@ private:
 
     Integrals whole() {
         Integrals sum;
-        const auto borders = panel_borders(s_.knots_u, s_.start_u(), s_.end_u());
+        const auto borders = panel_borders(s_.knots_u, s_.start_u(), s_.end_u(), fineness_);
         for (std::size_t panel = 0; panel + 1 < borders.size(); ++panel) {
             const double width = borders[panel + 1] - borders[panel];
             for (std::size_t g = 0; g < gauss_at.size(); ++g) {
@@ -253,6 +255,7 @@ private:
     }
 
     const BSplineSurface& s_;
+    Fineness fineness_;
     std::vector<ParameterLoop> loops_;
     Columns columns_;
     Vector2 period_;
@@ -274,12 +277,13 @@ bool winds_along_v(const BSplineSurface& s, const std::vector<ParameterLoop>& lo
 
 }  // namespace
 
-FreeformIntegrals freeform_integrals(const Model& model, const Face& face, const Point3& c) {
+FreeformIntegrals freeform_integrals(const Model& model, const Face& face, const Point3& c,
+                                     const Fineness& fineness) {
     const BSplineSurface& surface = *std::get<SharedBSplineSurface>(face.surface);
     const double sense = face.same_sense != surface.mirrored ? 1 : -1;
-    std::vector<ParameterLoop> loops = parameter_loops(model, face);
+    std::vector<ParameterLoop> loops = parameter_loops(model, face, fineness);
     if (!winds_along_v(surface, loops)) {
-        return FaceIntegral(surface, std::move(loops), c).result(sense);
+        return FaceIntegral(surface, std::move(loops), c, fineness).result(sense);
     }
     for (ParameterLoop& loop : loops) {
         for (ParameterNode& node : loop.nodes) {
@@ -288,7 +292,7 @@ FreeformIntegrals freeform_integrals(const Model& model, const Face& face, const
         }
     }
     const BSplineSurface across = transposed(surface);
-    return FaceIntegral(across, std::move(loops), c).result(-sense);
+    return FaceIntegral(across, std::move(loops), c, fineness).result(-sense);
 }
 
 }  // namespace lyr

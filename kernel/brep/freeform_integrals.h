@@ -10,6 +10,7 @@
 #pragma once
 
 #include "kernel/brep/model.h"
+#include "kernel/brep/quadrature.h"
 
 namespace lyr {
 
@@ -21,6 +22,8 @@ struct FreeformIntegrals {
 };
 
 // Of a face on a B-spline surface, and on no other.
-FreeformIntegrals freeform_integrals(const Model& model, const Face& face, const Point3& c);
+// Less than for_figures is less accurate than freeform_accuracy.
+FreeformIntegrals freeform_integrals(const Model& model, const Face& face, const Point3& c,
+                                     const Fineness& fineness = for_figures);
 
 }  // namespace lyr

@@ -66,7 +66,7 @@ std::vector<Drawing> drawings_of(const Model& model, const Face& face) {
         const Vector2 period = periods_of(**spline);
         if (period.x() > 0 && period.y() > 0) return {};
         const bool swapped = period.y() > 0;
-        for (const ParameterLoop& loop : parameter_loops(model, face)) {
+        for (const ParameterLoop& loop : parameter_loops(model, face, for_figures)) {
             std::vector<Point2> uv;
             for (const ParameterNode& node : loop.nodes) {
                 uv.push_back(swapped ? Point2(node.uv.y(), -node.uv.x()) : node.uv);

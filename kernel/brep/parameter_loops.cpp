@@ -5,10 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "kernel/brep/free_edges.h"
-#include "kernel/brep/quadrature.h"
 #include "kernel/brep/surface_foot.h"
 #include "kernel/geometry/tolerance.h"
 
@@ -16,22 +14,23 @@ namespace lyr {
 
 namespace {
 
-std::vector<double> edge_borders(const Edge& edge) {
-    constexpr double widest_panel_rad = std::numbers::pi / 8;
+std::vector<double> edge_borders(const Edge& edge, const Fineness& fineness) {
     const double from = std::min(edge.t_start, edge.t_end), to = std::max(edge.t_start, edge.t_end);
     std::vector<double> knots;
     if (const auto* spline = std::get_if<BSplineCurve>(&edge.curve)) {
         knots = spline->knots;
     } else if (!std::holds_alternative<Line>(edge.curve)) {
-        for (double t = from + widest_panel_rad; t < to; t += widest_panel_rad) knots.push_back(t);
+        const double widest = fineness.widest_rad;
+        for (double t = from + widest; t < to; t += widest) knots.push_back(t);
     }
-    return panel_borders(knots, from, to);
+    return panel_borders(knots, from, to, fineness);
 }
 
 class Tracker {
 public:
-    Tracker(const BSplineSurface& surface, double closeness_mm)
+    Tracker(const BSplineSurface& surface, double closeness_mm, const Fineness& fineness)
         : surface_(surface),
+          fineness_(fineness),
           period_(periods_of(surface)),
           closeness_mm_(closeness_mm),
           foot_(surface) {
@@ -65,7 +64,7 @@ private:
     };
 
     void append(const Edge& edge, const Coedge& use, ParameterLoop& loop) {
-        std::vector<double> borders = edge_borders(edge);
+        std::vector<double> borders = edge_borders(edge, fineness_);
         if (use.reversed != (edge.t_end < edge.t_start)) {
             std::reverse(borders.begin(), borders.end());
         }
@@ -129,6 +128,7 @@ private:
     }
 
     const BSplineSurface& surface_;
+    Fineness fineness_;
     Vector2 period_;
     double closeness_mm_;
     SurfaceFoot foot_;
@@ -161,9 +161,10 @@ Point2 followed(Point2 uv, const Point2& last, const Vector2& period) {
     return uv;
 }
 
-std::vector<ParameterLoop> parameter_loops(const Model& model, const Face& face) {
+std::vector<ParameterLoop> parameter_loops(const Model& model, const Face& face,
+                                           const Fineness& fineness) {
     Tracker tracker(*std::get<SharedBSplineSurface>(face.surface),
-                    std::max(model.uncertainty_mm, resolution_mm));
+                    std::max(model.uncertainty_mm, resolution_mm), fineness);
     std::vector<ParameterLoop> loops;
     for (std::uint32_t l = face.first_loop; l < face.first_loop + face.loop_count; ++l) {
         loops.push_back(tracker.loop(model, model.loops[l]));

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "kernel/brep/model.h"
+#include "kernel/brep/quadrature.h"
 
 namespace lyr {
 
@@ -43,7 +44,8 @@ Vector2 periods_of(const BSplineSurface& surface);
 Point2 followed(Point2 uv, const Point2& last, const Vector2& period);
 
 // Of each loop of the face; one of a vertex loop has no nodes.
-std::vector<ParameterLoop> parameter_loops(const Model& model, const Face& face);
+std::vector<ParameterLoop> parameter_loops(const Model& model, const Face& face,
+                                           const Fineness& fineness);
 
 // How often a loop goes around in each parameter.
 Eigen::Vector2i turns_of(const ParameterLoop& loop, const Vector2& period);

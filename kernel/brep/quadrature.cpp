@@ -7,15 +7,16 @@
 
 namespace lyr {
 
-std::vector<double> panel_borders(const std::vector<double>& knots, double from, double to) {
+std::vector<double> panel_borders(const std::vector<double>& knots, double from, double to,
+                                  const Fineness& fineness) {
     std::vector<double> spans{from};
     for (const double knot : knots) {
         if (knot > spans.back() && knot < to) spans.push_back(knot);
     }
     spans.push_back(to);
     const auto count = static_cast<int>(spans.size()) - 1;
-    const int every = (count + most_panels - 1) / most_panels;
-    const int parts = (fewest_panels + count - 1) / count;
+    const int every = (count + fineness.most - 1) / fineness.most;
+    const int parts = (fineness.fewest + count - 1) / count;
     std::vector<double> borders;
     for (std::size_t i = 0; i + 1 < spans.size(); i += static_cast<std::size_t>(every)) {
         const double next = spans[std::min(i + static_cast<std::size_t>(every), spans.size() - 1)];

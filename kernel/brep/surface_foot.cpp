@@ -23,7 +23,7 @@ void SurfaceFoot::move_to(const Point3& point, double doubtful_mm) {
         if (distance_mm_ <= doubtful_mm) return;
     }
     is_first_ = false;
-    set(point, invert(*surface_, point));
+    set(point, invert(*surface_, point, doubtful_mm));
 }
 
 bool SurfaceFoot::approach(const Point3& point) {

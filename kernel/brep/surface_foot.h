@@ -1,9 +1,9 @@
 // Feet of points on a B-spline surface, one after the other along a path.
 //
 // Contract
-//  1. The first foot is the nearest point of the whole surface. The next ones are sought from the foot before, by a few
-//     steps in tangent planes, and found to rough_foot of the way from there; where that leads to a foot farther off
-//     than `doubtful_mm`, on the whole surface again.
+//  1. The first foot is the nearest point of the whole surface, or one that is not farther off than `doubtful_mm`. The
+//     next ones are sought from the foot before, by a few steps in tangent planes, and found to rough_foot of the way
+//     from there; where that leads to a foot farther off than that, on the whole surface again.
 
 #pragma once
 

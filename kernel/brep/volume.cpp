@@ -31,13 +31,17 @@ constexpr std::array<double, 5> gauss_weight{0.11846344252809454, 0.239314335249
                                              0.28444444444444444, 0.23931433524968324,
                                              0.11846344252809454};
 
+// What integrals are taken for: to be told, or to see which sign they have.
+enum class Aim { figure, sign };
+
 // How many panels of five points an edge needs.
-int panels(const Edge& edge) {
-    constexpr double widest_panel_rad = pi / 6;
-    if (std::holds_alternative<Line>(edge.curve)) return 1;
+int panels(const Edge& edge, Aim aim) {
+    constexpr int most_for_sign = 8;
     if (const auto* spline = std::get_if<BSplineCurve>(&edge.curve)) {
-        return 2 * static_cast<int>(spline->control_points.size());
+        const int all = 2 * static_cast<int>(spline->control_points.size());
+        return aim == Aim::sign ? std::min(all, most_for_sign) : all;
     }
+    const double widest_panel_rad = aim == Aim::sign ? pi / 2 : pi / 6;
     return 1 + static_cast<int>(std::abs(edge.t_end - edge.t_start) / widest_panel_rad);
 }
 
@@ -60,17 +64,22 @@ Node node_at(const Curve& curve, double t, double weight) {
     return {point, weight * derivative(curve, t)};
 }
 
-LoopNodes nodes_of(const Model& model, const Loop& loop) {
+LoopNodes nodes_of(const Model& model, const Loop& loop, Aim aim) {
     LoopNodes nodes;
     for (std::uint32_t c = loop.first_coedge; c < loop.first_coedge + loop.coedge_count; ++c) {
         const Coedge& use = model.coedges[c];
         const Edge& edge = model[use.edge];
         const double from = use.reversed ? edge.t_end : edge.t_start;
         const double to = use.reversed ? edge.t_start : edge.t_end;
-        const int count = panels(edge);
-        const double width = (to - from) / count;
-        nodes.reserve(nodes.size() + 1 + gauss_at.size() * static_cast<std::size_t>(count));
         nodes.push_back({evaluate(edge.curve, from), Vector3::Zero()});
+        if (const auto* line = std::get_if<Line>(&edge.curve)) {
+            // All integrands are linear along lines.
+            nodes.push_back(node_at(*line, 0.5 * (from + to), to - from));
+            continue;
+        }
+        const int count = panels(edge, aim);
+        const double width = (to - from) / count;
+        nodes.reserve(nodes.size() + gauss_at.size() * static_cast<std::size_t>(count));
         for (int panel = 0; panel < count; ++panel) {
             for (std::size_t i = 0; i < gauss_at.size(); ++i) {
                 const double t = from + (panel + gauss_at[i]) * width;
@@ -83,10 +92,10 @@ LoopNodes nodes_of(const Model& model, const Loop& loop) {
 
 using FaceNodes = std::vector<LoopNodes>;
 
-FaceNodes nodes_of(const Model& model, const Face& face) {
+FaceNodes nodes_of(const Model& model, const Face& face, Aim aim) {
     FaceNodes nodes;
     for (std::uint32_t l = face.first_loop; l < face.first_loop + face.loop_count; ++l) {
-        nodes.push_back(nodes_of(model, model.loops[l]));
+        nodes.push_back(nodes_of(model, model.loops[l], aim));
     }
     return nodes;
 }
@@ -295,12 +304,13 @@ struct FaceIntegrals {
     double area, flux;
 };
 
-FaceIntegrals integrals_of(const Model& model, const Face& face, const Point3& c) {
+FaceIntegrals integrals_of(const Model& model, const Face& face, const Point3& c, Aim aim) {
     if (std::holds_alternative<SharedBSplineSurface>(face.surface)) {
-        const FreeformIntegrals integrals = freeform_integrals(model, face, c);
+        const FreeformIntegrals integrals =
+            freeform_integrals(model, face, c, aim == Aim::sign ? for_signs : for_figures);
         return {integrals.area_mm2, integrals.flux_mm3};
     }
-    const FaceNodes nodes = nodes_of(model, face);
+    const FaceNodes nodes = nodes_of(model, face, aim);
     const double sense = face.same_sense ? 1 : -1;
     const Vector3 outward = vector_area(nodes, c);
     struct Visitor {
@@ -356,23 +366,42 @@ Point3 near_point(const Model& model, const Shell& shell) {
         face.surface);
 }
 
-}  // namespace
-
-double signed_volume_mm3(const Model& model, ShellId id) {
-    const Shell& shell = model[id];
-    const Point3 c = near_point(model, shell);
-    double sum = 0;
-    for (std::uint32_t f = shell.first_face; f < shell.first_face + shell.face_count; ++f) {
-        sum += integrals_of(model, model.faces[f], c).flux;
+// A lower bound for the length of the face's boundary.
+double chord_length(const Model& model, const Face& face) {
+    double length = 0;
+    for (std::uint32_t l = face.first_loop; l < face.first_loop + face.loop_count; ++l) {
+        const Loop& loop = model.loops[l];
+        for (std::uint32_t c = loop.first_coedge; c < loop.first_coedge + loop.coedge_count; ++c) {
+            const Edge& edge = model[model.coedges[c].edge];
+            const Point3 middle = evaluate(edge.curve, 0.5 * (edge.t_start + edge.t_end));
+            length += (model[edge.start].point - middle).norm() +
+                      (model[edge.end].point - middle).norm();
+        }
     }
-    return sum / 3;
+    return length;
 }
 
-double signed_area_mm2(const Model& model, FaceId id) {
-    return integrals_of(model, model[id], near_point(model, model[model[id].shell])).area;
+// Whether a boundary bounds two regions, whose areas together are the whole surface's.
+bool closes_upon_itself(const Surface& surface) {
+    if (const auto* spline = std::get_if<SharedBSplineSurface>(&surface))
+        return (*spline)->closed_u || (*spline)->closed_v;
+    return std::holds_alternative<Sphere>(surface) || std::holds_alternative<Torus>(surface);
 }
 
-ShellOrientation orient_closed_shell(Model& model, ShellId id, bool is_void) {
+// Integrals whose signs are right: roughly where that is certain, else as exactly as can be.
+constexpr double certain_share = 1e-3;  // of the square of the length around
+
+FaceIntegrals integrals_for_signs(const Model& model, const Face& face, const Point3& c) {
+    if (!closes_upon_itself(face.surface)) {
+        const FaceIntegrals rough = integrals_of(model, face, c, Aim::sign);
+        const double length = chord_length(model, face);
+        if (std::abs(rough.area) > certain_share * length * length) return rough;
+    }
+    return integrals_of(model, face, c, Aim::figure);
+}
+
+// Takes the loops' word where same_sense contradicts them.
+ShellOrientation turn_faces(Model& model, ShellId id, Aim aim) {
     // The sign of a sliver's area is that of its edges' round-off: resolution_mm over a length of ten metres.
     constexpr double certain_area_mm2 = resolution_mm * 1e4;
     const Shell& shell = model[id];
@@ -380,14 +409,44 @@ ShellOrientation orient_closed_shell(Model& model, ShellId id, bool is_void) {
     ShellOrientation result;
     for (std::uint32_t f = shell.first_face; f < shell.first_face + shell.face_count; ++f) {
         Face& face = model.faces[f];
-        FaceIntegrals integrals = integrals_of(model, face, c);
+        const auto integrals_now = [&] {
+            return aim == Aim::sign ? integrals_for_signs(model, face, c)
+                                    : integrals_of(model, face, c, aim);
+        };
+        FaceIntegrals integrals = integrals_now();
         if (integrals.area < -certain_area_mm2) {
             face.same_sense = !face.same_sense;
             ++result.faces_turned;
-            integrals = integrals_of(model, face, c);
+            integrals = integrals_now();
         }
         result.volume_mm3 += integrals.flux / 3;
         result.area_mm2 += std::abs(integrals.area);
+    }
+    return result;
+}
+
+}  // namespace
+
+double signed_volume_mm3(const Model& model, ShellId id) {
+    const Shell& shell = model[id];
+    const Point3 c = near_point(model, shell);
+    double sum = 0;
+    for (std::uint32_t f = shell.first_face; f < shell.first_face + shell.face_count; ++f) {
+        sum += integrals_of(model, model.faces[f], c, Aim::figure).flux;
+    }
+    return sum / 3;
+}
+
+double signed_area_mm2(const Model& model, FaceId id) {
+    return integrals_of(model, model[id], near_point(model, model[model[id].shell]), Aim::figure).area;
+}
+
+ShellOrientation orient_closed_shell(Model& model, ShellId id, bool is_void) {
+    ShellOrientation result = turn_faces(model, id, Aim::sign);
+    if (std::abs(result.volume_mm3) < certain_share * std::pow(result.area_mm2, 1.5)) {
+        const std::size_t turned = result.faces_turned;
+        result = turn_faces(model, id, Aim::figure);
+        result.faces_turned += turned;
     }
     result.is_reversed = is_void ? result.volume_mm3 > 0 : result.volume_mm3 < 0;
     if (result.is_reversed) reverse_shell(model, id);

@@ -39,7 +39,7 @@ void reverse_shell(Model& model, ShellId shell);
 struct ShellOrientation {
     std::size_t faces_turned = 0;         // their same_sense alone
     bool is_reversed = false;             // the shell, after that
-    double volume_mm3 = 0, area_mm2 = 0;  // the volume as it was stated
+    double volume_mm3 = 0, area_mm2 = 0;  // the volume as it was stated, both to a few thousandths
 };
 
 ShellOrientation orient_closed_shell(Model& model, ShellId shell, bool is_void);

@@ -165,7 +165,8 @@ Foot descend(const BSplineSurface& s, const Point3& point, const Point2& start) 
 
 class NearestPoint {
 public:
-    NearestPoint(const BSplineSurface& surface, const Point3& point) : s_(surface), point_(point) {}
+    NearestPoint(const BSplineSurface& surface, const Point3& point, double enough_mm)
+        : s_(surface), point_(point), enough_mm_(enough_mm) {}
 
     Point2 find() {
         descend_from(greville_of_nearest_control_point());
@@ -201,7 +202,8 @@ private:
     // Whether a bound leaves room for a point that is nearer by more than what does not matter.
     bool worth_a_look(double bound_mm) const {
         constexpr double indifferent_share = 1e-6;
-        return bound_mm < best_.distance_mm * (1 - indifferent_share) - exact_mm;
+        return best_.distance_mm > enough_mm_ &&
+               bound_mm < best_.distance_mm * (1 - indifferent_share) - exact_mm;
     }
 
     void wait(Task task) {
@@ -281,6 +283,7 @@ private:
 
     const BSplineSurface& s_;
     Point3 point_;
+    double enough_mm_;
     Foot best_{Point2::Zero(), infinity};
     std::vector<Task> queue_ = {};
 };
@@ -294,8 +297,8 @@ bool at_pole(const BSplineSurface& s, const Point2& uv) {
 
 }  // namespace
 
-Point2 invert(const BSplineSurface& surface, const Point3& point) {
-    return NearestPoint(surface, point).find();
+Point2 invert(const BSplineSurface& surface, const Point3& point, double enough_mm) {
+    return NearestPoint(surface, point, enough_mm).find();
 }
 
 Point2 invert_near(const BSplineSurface& surface, const Point3& point, const Point2& guess) {

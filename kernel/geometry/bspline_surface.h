@@ -6,7 +6,7 @@
 //  2. bezier_patches() together are the surface, knot span by knot span; each lies in the convex hull of its
 //     control points. Neighbours have the control points of their common border to the last bit.
 //  3. invert(s, p) are the parameters of the point of the whole surface that is nearest to p, if not by less than a
-//     millionth of the distance; invert_near() finds the nearest one in the neighbourhood of a guess.
+//     millionth of the distance, or of one that is within `enough_mm`; invert_near() finds the nearest one in the neighbourhood of a guess.
 //     |evaluate(s, invert(s, p)) - p| <= resolution_mm for p on s.
 //  4. normal() is along d/du x d/dv, against it if `mirrored`, and where these vanish (a pole) the limit from
 //     inside the domain.
@@ -53,7 +53,7 @@ struct Partials {
 Point3 evaluate(const BSplineSurface& surface, const Point2& uv);
 Partials partials(const BSplineSurface& surface, const Point2& uv);
 Vector3 normal(const BSplineSurface& surface, const Point2& uv);
-Point2 invert(const BSplineSurface& surface, const Point3& point);
+Point2 invert(const BSplineSurface& surface, const Point3& point, double enough_mm = 0);
 Point2 invert_near(const BSplineSurface& surface, const Point3& point, const Point2& guess);
 BSplineSurface transformed(BSplineSurface surface, const Eigen::Affine3d& transform);
 
