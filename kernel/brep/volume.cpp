@@ -55,13 +55,14 @@ using LoopNodes = std::vector<Node>;
 
 // A node's point and, times `weight`, the curve's derivative. Along a circle the one is the other, turned.
 Node node_at(const Curve& curve, double t, double weight) {
-    const Point3 point = evaluate(curve, t);
     if (const auto* circle = std::get_if<Circle>(&curve)) {
+        const Point3 point = evaluate(curve, t);
         const Vector3 turned =
             circle->frame.x.cross(circle->frame.y).cross(point - circle->frame.origin);
         return {point, weight * turned};
     }
-    return {point, weight * derivative(curve, t)};
+    const auto [point, tangent] = point_and_tangent(curve, t);
+    return {point, weight * tangent};
 }
 
 LoopNodes nodes_of(const Model& model, const Loop& loop, Aim aim) {
@@ -72,9 +73,9 @@ LoopNodes nodes_of(const Model& model, const Loop& loop, Aim aim) {
         const double from = use.reversed ? edge.t_end : edge.t_start;
         const double to = use.reversed ? edge.t_start : edge.t_end;
         nodes.push_back({evaluate(edge.curve, from), Vector3::Zero()});
-        if (const auto* line = std::get_if<Line>(&edge.curve)) {
+        if (std::holds_alternative<Line>(edge.curve)) {
             // All integrands are linear along lines.
-            nodes.push_back(node_at(*line, 0.5 * (from + to), to - from));
+            nodes.push_back(node_at(edge.curve, 0.5 * (from + to), to - from));
             continue;
         }
         const int count = panels(edge, aim);
@@ -207,7 +208,7 @@ double sphere_area(const Sphere& sphere, const FaceNodes& face, double sense) {
 }
 
 struct TorusIntegrals {
-    double area, cosine;
+    double area, cosine, whole = 0;
 };
 
 // Angles along one loop, followed so that they do not jump.
@@ -255,7 +256,7 @@ TorusIntegrals torus_integrals(const Torus& torus, const FaceNodes& face, double
     const double whole_area = 4 * pi * pi * major * minor,
                  whole_cosine = 2 * pi * pi * minor * minor;
     const double turns = turns_to_add(area, whole_area);
-    return {area + turns * whole_area, cosine + turns * whole_cosine};
+    return {area + turns * whole_area, cosine + turns * whole_cosine, whole_area};
 }
 
 // Integrals along a meridian of the lemon from its waist, where v is pi.
@@ -291,7 +292,7 @@ TorusIntegrals lemon_integrals(const Torus& torus, const FaceNodes& face, double
     const double area = sense * handedness(torus.frame) * sum.area;
     const double turns = turns_to_add(area, whole.area);
     return {area + turns * whole.area,
-            sense * handedness(torus.frame) * sum.cosine + turns * whole.cosine};
+            sense * handedness(torus.frame) * sum.cosine + turns * whole.cosine, whole.area};
 }
 
 TorusIntegrals tube_integrals(const Torus& torus, const FaceNodes& face, double sense) {
@@ -299,9 +300,9 @@ TorusIntegrals tube_integrals(const Torus& torus, const FaceNodes& face, double 
                              : torus_integrals(torus, face, sense);
 }
 
-// A face's area, and three times its part of the volume.
+// A face's area, and three times its part of the volume. `whole` is the area of a surface that closes upon itself.
 struct FaceIntegrals {
-    double area, flux;
+    double area, flux, whole = 0;
 };
 
 FaceIntegrals integrals_of(const Model& model, const Face& face, const Point3& c, Aim aim) {
@@ -332,13 +333,15 @@ FaceIntegrals integrals_of(const Model& model, const Face& face, const Point3& c
         }
         FaceIntegrals operator()(const Sphere& s) const {
             const double area = sphere_area(s, nodes, sense);
-            return {area, (s.frame.origin - c).dot(outward) + sense * s.radius_mm * area};
+            return {area, (s.frame.origin - c).dot(outward) + sense * s.radius_mm * area,
+                    4 * pi * s.radius_mm * s.radius_mm};
         }
         FaceIntegrals operator()(const Torus& s) const {
             const TorusIntegrals integrals = tube_integrals(s, nodes, sense);
             return {integrals.area,
                     (s.frame.origin - c).dot(outward) +
-                        sense * (s.minor_mm * integrals.area + s.major_mm * integrals.cosine)};
+                        sense * (s.minor_mm * integrals.area + s.major_mm * integrals.cosine),
+                    integrals.whole};
         }
         FaceIntegrals operator()(const SharedBSplineSurface&) const { return {0, 0}; }  // see above
     };
@@ -366,6 +369,10 @@ Point3 near_point(const Model& model, const Shell& shell) {
         face.surface);
 }
 
+// Rough integrals are right to some ten-thousandths: of the square of the length around a face, or of the power 3/2 of a
+// shell's area.
+constexpr double certain_share = 1e-3;
+
 // A lower bound for the length of the face's boundary.
 double chord_length(const Model& model, const Face& face) {
     double length = 0;
@@ -381,21 +388,20 @@ double chord_length(const Model& model, const Face& face) {
     return length;
 }
 
-// Whether a boundary bounds two regions, whose areas together are the whole surface's.
-bool closes_upon_itself(const Surface& surface) {
-    if (const auto* spline = std::get_if<SharedBSplineSurface>(&surface))
-        return (*spline)->closed_u || (*spline)->closed_v;
-    return std::holds_alternative<Sphere>(surface) || std::holds_alternative<Torus>(surface);
+bool is_closed_spline(const Surface& surface) {
+    const auto* spline = std::get_if<SharedBSplineSurface>(&surface);
+    return spline && ((*spline)->closed_u || (*spline)->closed_v);
 }
 
-// Integrals whose signs are right: roughly where that is certain, else as exactly as can be.
-constexpr double certain_share = 1e-3;  // of the square of the length around
-
+// Integrals whose signs are right: roughly where that is certain, else as exactly as can be. On a surface that closes upon
+// itself all but nothing and all but the whole are as uncertain as all but nothing elsewhere.
 FaceIntegrals integrals_for_signs(const Model& model, const Face& face, const Point3& c) {
-    if (!closes_upon_itself(face.surface)) {
+    if (!is_closed_spline(face.surface)) {
         const FaceIntegrals rough = integrals_of(model, face, c, Aim::sign);
         const double length = chord_length(model, face);
-        if (std::abs(rough.area) > certain_share * length * length) return rough;
+        const double least = certain_share * (rough.whole > 0 ? rough.whole : length * length);
+        const bool is_rest = rough.whole > 0 && rough.area > rough.whole - least;
+        if (std::abs(rough.area) > least && !is_rest) return rough;
     }
     return integrals_of(model, face, c, Aim::figure);
 }

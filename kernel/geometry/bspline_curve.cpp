@@ -97,27 +97,6 @@ Homogeneous homogeneous(const BSplineCurve& curve, std::size_t i) {
     return {w * p.x(), w * p.y(), w * p.z(), w};
 }
 
-struct PointAndTangent {
-    Point3 point;
-    Vector3 tangent;
-};
-
-PointAndTangent point_and_tangent(const BSplineCurve& curve, double parameter) {
-    const double t = into_domain(curve, parameter);
-    const std::size_t span = span_of(curve, t);
-    if (curve.weights.empty()) {
-        Triangle<Vector3> triangle(
-            curve, span, [&](std::size_t i) -> const Point3& { return curve.control_points[i]; });
-        const auto [point, tangent] = triangle.value_and_derivative(t);
-        return {point, tangent};
-    }
-    Triangle<Homogeneous> triangle(curve, span,
-                                   [&](std::size_t i) { return homogeneous(curve, i); });
-    const auto [value, slope] = triangle.value_and_derivative(t);
-    const Point3 point = value.head<3>() / value.w();
-    return {point, (slope.head<3>() - slope.w() * point) / value.w()};
-}
-
 // {height over `base`, its derivative}; heights are taken relative to lose no digits to the quotient.
 std::pair<double, double> height_and_slope(const BSplineCurve& curve, double parameter,
                                            double base_mm) {
@@ -289,6 +268,22 @@ private:
 };
 
 }  // namespace
+
+PointAndTangent point_and_tangent(const BSplineCurve& curve, double parameter) {
+    const double t = into_domain(curve, parameter);
+    const std::size_t span = span_of(curve, t);
+    if (curve.weights.empty()) {
+        Triangle<Vector3> triangle(
+            curve, span, [&](std::size_t i) -> const Point3& { return curve.control_points[i]; });
+        const auto [point, tangent] = triangle.value_and_derivative(t);
+        return {point, tangent};
+    }
+    Triangle<Homogeneous> triangle(curve, span,
+                                   [&](std::size_t i) { return homogeneous(curve, i); });
+    const auto [value, slope] = triangle.value_and_derivative(t);
+    const Point3 point = value.head<3>() / value.w();
+    return {point, (slope.head<3>() - slope.w() * point) / value.w()};
+}
 
 Point3 evaluate(const BSplineCurve& curve, double t) {
     return point_and_tangent(curve, t).point;

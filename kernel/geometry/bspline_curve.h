@@ -15,6 +15,7 @@ namespace lyr {
 
 Point3 evaluate(const BSplineCurve& curve, double t);
 Vector3 derivative(const BSplineCurve& curve, double t);
+PointAndTangent point_and_tangent(const BSplineCurve& curve, double t);
 double invert(const BSplineCurve& curve, const Point3& point);
 std::vector<double> height_extrema(const BSplineCurve& curve, double from, double to);
 double parameter_at_height(const BSplineCurve& curve, double from, double to, double z_mm);

@@ -258,6 +258,11 @@ Vector3 derivative(const Curve& curve, double t) {
     return std::visit([&](const auto& c) { return tangent_at(c, t); }, curve);
 }
 
+PointAndTangent point_and_tangent(const Curve& curve, double t) {
+    if (const auto* spline = std::get_if<BSplineCurve>(&curve)) return point_and_tangent(*spline, t);
+    return {evaluate(curve, t), derivative(curve, t)};
+}
+
 double invert(const Curve& curve, const Point3& point) {
     return std::visit([&](const auto& c) { return parameter_of(c, point); }, curve);
 }

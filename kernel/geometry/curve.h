@@ -73,6 +73,13 @@ using Curve = std::variant<Line, Circle, Ellipse, Parabola, Hyperbola, BSplineCu
 Point3 evaluate(const Curve& curve, double t);
 Vector3 derivative(const Curve& curve, double t);
 
+// Both at the price of one.
+struct PointAndTangent {
+    Point3 point;
+    Vector3 tangent;  // the derivative
+};
+PointAndTangent point_and_tangent(const Curve& curve, double t);
+
 // Of a closed curve: within one period, for angles in (-pi, pi], for a B-spline in its domain.
 double invert(const Curve& curve, const Point3& point);
 
