@@ -381,8 +381,8 @@ double chord_length(const Model& model, const Face& face) {
         for (std::uint32_t c = loop.first_coedge; c < loop.first_coedge + loop.coedge_count; ++c) {
             const Edge& edge = model[model.coedges[c].edge];
             const Point3 middle = evaluate(edge.curve, 0.5 * (edge.t_start + edge.t_end));
-            length += (model[edge.start].point - middle).norm() +
-                      (model[edge.end].point - middle).norm();
+            length +=
+                (model[edge.start].point - middle).norm() + (model[edge.end].point - middle).norm();
         }
     }
     return length;
@@ -444,7 +444,8 @@ double signed_volume_mm3(const Model& model, ShellId id) {
 }
 
 double signed_area_mm2(const Model& model, FaceId id) {
-    return integrals_of(model, model[id], near_point(model, model[model[id].shell]), Aim::figure).area;
+    return integrals_of(model, model[id], near_point(model, model[model[id].shell]), Aim::figure)
+        .area;
 }
 
 ShellOrientation orient_closed_shell(Model& model, ShellId id, bool is_void) {

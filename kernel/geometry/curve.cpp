@@ -259,7 +259,8 @@ Vector3 derivative(const Curve& curve, double t) {
 }
 
 PointAndTangent point_and_tangent(const Curve& curve, double t) {
-    if (const auto* spline = std::get_if<BSplineCurve>(&curve)) return point_and_tangent(*spline, t);
+    if (const auto* spline = std::get_if<BSplineCurve>(&curve))
+        return point_and_tangent(*spline, t);
     return {evaluate(curve, t), derivative(curve, t)};
 }
 

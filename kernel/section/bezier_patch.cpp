@@ -149,18 +149,21 @@ QuarticPart quartic_part(const BezierPatch& patch) {
         for (std::size_t line = 0; line < lines; ++line) {
             for (int i = 0; i + 4 <= degree; ++i) {
                 const auto* c =
-                    &patch.control_points[line * line_stride + static_cast<std::size_t>(i) * stride];
-                const Eigen::Vector4d d = c[0] - 4 * c[stride] + 6 * c[2 * stride] -
-                                          4 * c[3 * stride] + c[4 * stride];
+                    &patch
+                         .control_points[line * line_stride + static_cast<std::size_t>(i) * stride];
+                const Eigen::Vector4d d =
+                    c[0] - 4 * c[stride] + 6 * c[2 * stride] - 4 * c[3 * stride] + c[4 * stride];
                 // Of a quotient: that of the numerator, seen from the origin, and of the denominator.
-                most = std::max(most, (d.head<3>() - d.w() * origin).norm() + reach * std::abs(d.w()));
+                most =
+                    std::max(most, (d.head<3>() - d.w() * origin).norm() + reach * std::abs(d.w()));
             }
         }
         return degree * (degree - 1.0) * (degree - 2.0) * (degree - 3.0) * most /
                (384 * least_weight);
     };
     const auto rows = static_cast<std::size_t>(patch.degree_u) + 1;
-    return {largest(columns, patch.degree_u, columns, 1), largest(1, patch.degree_v, rows, columns)};
+    return {largest(columns, patch.degree_u, columns, 1),
+            largest(1, patch.degree_v, rows, columns)};
 }
 
 IsoLine::IsoLine(const BezierPatch& patch, bool along_u, double fixed)

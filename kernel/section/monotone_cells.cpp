@@ -195,10 +195,8 @@ void divide(HeightPatch patch, std::uint32_t index, std::vector<MonotoneCell>& c
     // Differences times these are derivatives.
     const double by_u = patch.degree_u / (patch.to_u - patch.from_u);
     const double by_v = patch.degree_v / (patch.to_v - patch.from_v);
-    if (v.steady())
-        return emit(CellKind::graph_over_u, by_u * u.most() / (by_v * v.least()));
-    if (u.steady())
-        return emit(CellKind::graph_over_v, by_v * v.most() / (by_u * u.least()));
+    if (v.steady()) return emit(CellKind::graph_over_u, by_u * u.most() / (by_v * v.least()));
+    if (u.steady()) return emit(CellKind::graph_over_v, by_v * v.most() / (by_u * u.least()));
     if (u.one_sign() && v.one_sign()) return emit(CellKind::both, 0);
     if (range.high - range.low <= flat_cell_mm) return emit(CellKind::flat, 0);
     const Bending bend = bending(patch);

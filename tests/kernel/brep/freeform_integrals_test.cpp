@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include "kernel/brep/orientation.h"
 #include "kernel/brep/placement.h"
 #include "kernel/brep/volume.h"
 #include "kernel/freeform_solids.h"
@@ -29,6 +30,7 @@ void check_volume(const Model& model, double expected, double whole) {
               bound);
         CHECK(std::abs(signed_volume_mm3(transformed(reversed, move), ShellId{0}) + expected) <=
               bound);
+        check_orientation(transformed(model, move), expected, random);
     }
 }
 

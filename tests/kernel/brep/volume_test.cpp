@@ -1,12 +1,14 @@
 // The numbers are those of the contract in kernel/brep/volume.h.
 
+#include "kernel/brep/volume.h"
+
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <numbers>
 
+#include "kernel/brep/orientation.h"
 #include "kernel/brep/placement.h"
-#include "kernel/brep/volume.h"
 #include "kernel/geometry/random_curves.h"
 
 using namespace lyr;
@@ -82,6 +84,8 @@ void check_volume(const Shape& shape, double expected) {
               bound);
         CHECK(std::abs(signed_volume_mm3(transformed(reversed, move), ShellId(0)) + expected) <=
               bound);
+        if (expected > 0)
+            testing::check_orientation(transformed(shape.model, move), expected, random);
     }
 }
 
