@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/accuracy.h"
 #include "bench/index.h"
 #include "bench/measure.h"
 #include "bench/occt.h"
@@ -23,10 +24,11 @@ using namespace lyr::bench;
 const std::string parts = LYR_FIXTURES "/parts/";
 
 struct Arguments {
-    std::vector<std::string> only{"sections", "reading", "index", "scaling"};
+    std::vector<std::string> only{"sections", "reading", "index", "scaling", "accuracy"};
     std::string files = parts;
     std::string part;
     double layer_height_mm = 0.2;
+    std::size_t points = 100'000;
 };
 
 std::string processor_name() {
@@ -53,12 +55,22 @@ std::vector<PartToCut> parts_to_cut(const Arguments& arguments) {
     return {{parts + "gearbox_base.step", 0.2, 100}, {parts + "lower_teeth.step", 0.1, 500}};
 }
 
+Status measure_accuracies(const Arguments& arguments, Requirements& requirements) {
+    for (const PartToCut& part : parts_to_cut(arguments)) {
+        const Status done =
+            measure_accuracy(part.path, part.layer_height_mm, arguments.points, requirements);
+        if (!done) return done;
+    }
+    return Done{};
+}
+
 Status run(const Arguments& arguments, Requirements& requirements) {
     for (const std::string& table : arguments.only) {
         Status done = Done{};
         if (table == "sections") compare_sections(parts_to_cut(arguments), requirements);
         if (table == "reading") compare_reading(step_files(arguments.files), requirements);
         if (table == "index") done = measure_index(requirements);
+        if (table == "accuracy") done = measure_accuracies(arguments, requirements);
         if (table == "scaling") done = compare_scaling(requirements);
         if (!done) return done;
     }
@@ -72,8 +84,9 @@ int main(int argc, char** argv) {
     CLI::App app(
         "Compares speeds with OCCT's. Exit status: 0 all requirements met, 1 not all, else as "
         "stepc.");
-    app.add_option("--only", arguments.only, "Which tables: sections, reading, index, scaling")
-        ->check(CLI::IsMember({"sections", "reading", "index", "scaling"}))
+    app.add_option("--only", arguments.only,
+                   "Which tables: sections, reading, index, scaling, accuracy")
+        ->check(CLI::IsMember({"sections", "reading", "index", "scaling", "accuracy"}))
         ->delimiter(',');
     app.add_option("--files", arguments.files, "Folder of STEP files to read, or one file")
         ->check(CLI::ExistingPath);
@@ -81,6 +94,8 @@ int main(int argc, char** argv) {
         ->check(CLI::ExistingFile);
     app.add_option("--layer-height", arguments.layer_height_mm, "Of --part, in mm  [0.2]")
         ->check(CLI::Range(0.001, 10.0));
+    app.add_option("--points", arguments.points, "To be measured for accuracy  [100000]")
+        ->check(CLI::Range(1, 10'000'000));
     CLI11_PARSE(app, argc, argv);
 
     pin_to_one_processor();

@@ -5,18 +5,27 @@
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepGProp.hxx>
 #include <BRep_Builder.hxx>
+#include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
 #include <GProp_GProps.hxx>
+#include <GeomAPI_ProjectPointOnSurf.hxx>
+#include <Geom_Surface.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <Message_Printer.hxx>
+#include <Precision.hxx>
 #include <STEPControl_Reader.hxx>
 #include <ShapeAnalysis_FreeBounds.hxx>
+#include <ShapeAnalysis_Surface.hxx>
 #include <Standard_Failure.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopTools_HSequenceOfShape.hxx>
+#include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
+#include <TopoDS_Face.hxx>
+#include <algorithm>
 #include <gp_Pln.hxx>
+#include <limits>
 #include <vector>
 
 #include "bench/measure.h"
@@ -114,6 +123,50 @@ std::optional<Part::Section> Part::cut(double z_mm) const {
     } catch (const Standard_Failure&) {
         return std::nullopt;
     }
+}
+
+struct Surfaces::Faces {
+    struct Face {
+        Handle(Geom_Surface) surface;
+        Handle(ShapeAnalysis_Surface) projector;
+        Bnd_Box box;
+    };
+    std::vector<Face> faces;
+};
+
+Surfaces::Surfaces(std::shared_ptr<const Faces> faces) : faces_(std::move(faces)) {}
+
+std::optional<Surfaces> Surfaces::read(const std::string& path) {
+    // Around a face's box; what lies farther off than this is no question of a tolerance.
+    constexpr double margin_mm = 0.05;
+    const auto shape = shape_of(path);
+    if (!shape || shape->IsNull()) return std::nullopt;
+    auto faces = std::make_shared<Faces>();
+    for (TopExp_Explorer face(*shape, TopAbs_FACE); face.More(); face.Next()) {
+        Bnd_Box box;
+        BRepBndLib::Add(face.Current(), box, false);
+        box.Enlarge(margin_mm);
+        const Handle(Geom_Surface) surface = BRep_Tool::Surface(TopoDS::Face(face.Current()));
+        faces->faces.push_back({surface, new ShapeAnalysis_Surface(surface), box});
+    }
+    return Surfaces(std::move(faces));
+}
+
+double Surfaces::distance_mm(double x_mm, double y_mm, double z_mm, double enough_mm) const {
+    const gp_Pnt point(x_mm, y_mm, z_mm);
+    double least = std::numeric_limits<double>::infinity();
+    for (const Faces::Face& face : faces_->faces) {
+        if (face.box.IsOut(point)) continue;
+        const gp_Pnt2d foot = face.projector->ValueOfUV(point, Precision::Confusion());
+        least = std::min(least, face.projector->Value(foot).Distance(point));
+    }
+    if (least <= enough_mm) return least;
+    for (const Faces::Face& face : faces_->faces) {
+        if (face.box.IsOut(point)) continue;
+        const GeomAPI_ProjectPointOnSurf all(point, face.surface);
+        if (all.NbPoints() > 0) least = std::min(least, all.LowerDistance());
+    }
+    return least;
 }
 
 }  // namespace lyr::bench::occt

@@ -35,6 +35,21 @@ private:
     std::shared_ptr<const Faces> faces_;
 };
 
+// The faces' whole surfaces, for projecting points.
+class Surfaces {
+public:
+    static std::optional<Surfaces> read(const std::string& path);
+
+    // From the nearest surface of those whose faces' boxes come near the point. The quick projection from a grid may end
+    // in a place that is not the nearest: where it says more than `enough_mm`, all extrema are looked for.
+    double distance_mm(double x_mm, double y_mm, double z_mm, double enough_mm) const;
+
+private:
+    struct Faces;
+    explicit Surfaces(std::shared_ptr<const Faces> faces);
+    std::shared_ptr<const Faces> faces_;
+};
+
 // Processor time of reading a file and making shapes of it, nothing else; none if no shape comes out.
 std::optional<double> reading_time_s(const std::string& path);
 
