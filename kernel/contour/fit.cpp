@@ -155,8 +155,13 @@ void fit_arcs(const PlaneCurve& curve, double from, double to, const Point2& sta
 
 namespace {
 
-// Whether the points strictly between two of them are as near to a biarc between these as is allowed.
+// Whether the points strictly between two of them are as near to a biarc between these as is allowed. Between neighbours
+// there is nothing to measure, but the curve does not bulge there.
 bool holds(const Biarc& biarc, std::span<const CurvePoint> points, double allowed_mm) {
+    if (points.size() == 2) {
+        return std::abs(biarc.first.sagitta_mm) <= allowed_mm &&
+               std::abs(biarc.second.sagitta_mm) <= allowed_mm;
+    }
     const BiarcGauge gauge(points.front().point, biarc);
     return std::all_of(points.begin() + 1, points.end() - 1, [&](const CurvePoint& p) {
         return std::abs(gauge.offset_mm(p.point)) <= allowed_mm;

@@ -35,16 +35,19 @@ CurvePoint point_at(const LevelCurve& curve, double key) {
     return between(curve.points[i - 1], curve.points[i], share);
 }
 
-// Appends the curve's points strictly between two keys, which may lie a turn ahead.
+// Appends the curve's points from one key to another, which may lie a turn ahead. A closed curve's last point is its first
+// again: it comes once, unless there is a corner or the end.
 void append_between(const LevelCurve& curve, double from, double to,
                     std::vector<CurvePoint>& points, std::vector<double>& keys) {
     const double turn = curve.closed ? curve.length_mm() : 0;
     const double first = turn > 0 ? turn * std::floor(from / turn) : 0;
+    const bool corner =
+        angle_between(curve.points.back().tangent, curve.points.front().tangent) > corner_rad;
     for (double base = first; base < to || base == first; base += turn) {
-        const auto begin = std::upper_bound(curve.key.begin(), curve.key.end(), from - base);
-        // The last point of a closed curve is the first of the next turn.
-        for (auto key = begin; key != curve.key.end() && base + *key < to; ++key) {
-            if (curve.closed && key + 1 == curve.key.end()) break;
+        const auto begin = std::lower_bound(curve.key.begin(), curve.key.end(), from - base);
+        for (auto key = begin; key != curve.key.end() && base + *key <= to; ++key) {
+            const bool again = curve.closed && key + 1 == curve.key.end();
+            if (again && !corner && base + *key < to) break;
             points.push_back(curve.points[static_cast<std::size_t>(key - curve.key.begin())]);
             keys.push_back(base + *key);
         }
@@ -102,7 +105,8 @@ void trace(const FreeformSection& section, int component, double from, double to
         const double share = (keys[i] - from) / (to - from);
         points[i].point += (1 - share) * off_start + share * off_end;
     }
-    // Points so near an end that the chord's direction would be round-off, or the crossing's own inaccuracy.
+    // Points so near an end that the chord's direction would be round-off, or the crossing's own inaccuracy. Where an end
+    // lies in a corner, it is they that know the tangent on this side of it.
     const auto near = [](const Point2& a, const Vector2& off) {
         const double least = std::max(level_clearance_mm, 2 * off.norm());
         return [&a, least](const CurvePoint& p) { return (p.point - a).norm() <= least; };
@@ -111,9 +115,11 @@ void trace(const FreeformSection& section, int component, double from, double to
     const auto kept_end = std::find_if_not(std::make_reverse_iterator(points.end()),
                                            std::make_reverse_iterator(begin), near(end, off_end))
                               .base();
-    std::vector<CurvePoint> dense{{start, first.tangent}};
+    const CurvePoint& leaving = begin == points.begin() ? first : *std::prev(begin);
+    const CurvePoint& arriving = kept_end == points.end() ? last : *kept_end;
+    std::vector<CurvePoint> dense{{start, leaving.tangent}};
     for (auto point = begin; point != kept_end; ++point) append_dense(*point, allowed_mm, dense);
-    append_dense({end, last.tangent}, allowed_mm, dense);
+    append_dense({end, arriving.tangent}, allowed_mm, dense);
     fit_arcs(dense, allowed_mm, out);
 }
 
