@@ -31,10 +31,6 @@ struct CurvePoint {
 
 using PlaneCurve = std::function<CurvePoint(double parameter)>;
 
-// A curve whose direction changes by more than this at one point has a corner there: over a whole segment of a
-// millimetre, a tangent that is wrong by this shows by 0.001 mm in the middle.
-inline constexpr double corner_rad = 0.008;
-
 void fit_arcs(const PlaneCurve& curve, double from, double to, const Point2& start,
               const Point2& end, double allowed_mm, std::vector<Segment>& out);
 

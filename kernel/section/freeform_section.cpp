@@ -41,13 +41,11 @@ void append_between(const LevelCurve& curve, double from, double to,
                     std::vector<CurvePoint>& points, std::vector<double>& keys) {
     const double turn = curve.closed ? curve.length_mm() : 0;
     const double first = turn > 0 ? turn * std::floor(from / turn) : 0;
-    const bool corner =
-        angle_between(curve.points.back().tangent, curve.points.front().tangent) > corner_rad;
     for (double base = first; base < to || base == first; base += turn) {
         const auto begin = std::lower_bound(curve.key.begin(), curve.key.end(), from - base);
         for (auto key = begin; key != curve.key.end() && base + *key <= to; ++key) {
             const bool again = curve.closed && key + 1 == curve.key.end();
-            if (again && !corner && base + *key < to) break;
+            if (again && !curve.closes_in_corner && base + *key < to) break;
             points.push_back(curve.points[static_cast<std::size_t>(key - curve.key.begin())]);
             keys.push_back(base + *key);
         }

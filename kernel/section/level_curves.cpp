@@ -19,6 +19,12 @@ namespace {
 // Places are found on chords (freeform_section.cpp): these must not stray far from their curve.
 constexpr double farthest_from_chord_mm = 0.02;
 
+// The greatest value of s^2 (1 - s)^2 (s - 1/2), by its slope in the middle.
+constexpr double skew_share = 0.143;
+
+// By how much of its length a cubic strays that has one end's tangent turned by a radian: the greatest value of s (1 - s)^2.
+constexpr double wrong_end_share = 4.0 / 27;
+
 constexpr std::uint32_t none = ~std::uint32_t{0};
 
 // A crossing as an end of a cell's curve.
@@ -56,6 +62,8 @@ private:
     Vector2 extent(const CellCurve& curve) const;
     double bend_mm(const CellCurve& curve) const;
     int first_spans(const CellCurve& curve, const CurvePoint& start, double chord_mm) const;
+    bool is_corner(const CurvePoint& before, const CurvePoint& at, const Vector2& leaving,
+                   const CurvePoint& after) const;
     void sample(const CellCurve& curve, LevelCurve& out) const;
     void refine(const CellCurve& curve, double from, const CurvePoint& start, double to,
                 const CurvePoint& end, int depth, bool settled, LevelCurve& out) const;
@@ -146,7 +154,13 @@ LevelCurve Tracker::follow_from(std::uint32_t first_curve) {
         next = curve_from_[cell_curves_[next].end.crossing];
     }
     result.closed = next == first_curve;
-    if (result.closed) result.points.back().point = result.points.front().point;
+    if (result.closed) {
+        const std::size_t n = result.points.size();
+        result.points.back().point = result.points.front().point;
+        result.closes_in_corner =
+            n > 2 && is_corner(result.points[n - 2], result.points.back(),
+                               result.points.front().tangent, result.points[1]);
+    }
     result.key.push_back(0);
     for (std::size_t i = 1; i < result.points.size(); ++i) {
         result.key.push_back(result.key.back() +
@@ -199,8 +213,9 @@ Point2 Tracker::solve(const CellCurve& curve, double share) const {
     return chord;
 }
 
-// Halves a span until the cubic through its ends foretells the middle. The middle is kept, so that what is left of the
-// error is a sixteenth: it goes with the fourth power of the length.
+// Halves a span until the cubic through its ends foretells the middle, point and tangent. What the cubic is off is s^2 (1 -
+// s)^2 times a polynomial, whose value in the middle the point tells, and the tangent its slope. The middle is kept, and of
+// the first part a sixteenth remains: it goes with the fourth power of the length.
 void Tracker::refine(const CellCurve& curve, double from, const CurvePoint& start, double to,
                      const CurvePoint& end, int depth, bool settled, LevelCurve& out) const {
     constexpr int deepest = 40;
@@ -214,8 +229,11 @@ void Tracker::refine(const CellCurve& curve, double from, const CurvePoint& star
     // Against the cubic as a curve: where along it the middle comes to lie is the parameter's affair.
     const double share = std::clamp(
         (at.point - start.point).dot(end.point - start.point) / (length * length), 0.0, 1.0);
-    const double off = (between(start, end, share).point - at.point).norm();
-    const bool fine = off <= allowed_mm_ && sagitta_mm(start, end) <= farthest_from_chord_mm;
+    const CurvePoint foretold = between(start, end, share);
+    const double off = (foretold.point - at.point).norm();
+    const double skew = skew_share * length * std::abs(cross(foretold.tangent, at.tangent));
+    const bool fine = off <= allowed_mm_ && skew <= allowed_mm_ &&
+                      sagitta_mm(start, end) <= farthest_from_chord_mm;
     if (!fine) refine(curve, from, start, middle, at, depth + 1, true, out);
     out.points.push_back(at);
     if (!fine) refine(curve, middle, at, to, end, depth + 1, true, out);
@@ -261,6 +279,13 @@ int Tracker::first_spans(const CellCurve& curve, const CurvePoint& start, double
     return returns ? std::max(spans, 4) : spans;
 }
 
+// Whether a point that is left with another tangent than it is reached with makes the cubics beside it stray.
+bool Tracker::is_corner(const CurvePoint& before, const CurvePoint& at, const Vector2& leaving,
+                        const CurvePoint& after) const {
+    const double step = std::max((at.point - before.point).norm(), (after.point - at.point).norm());
+    return wrong_end_share * step * angle_between(at.tangent, leaving) > allowed_mm_;
+}
+
 void Tracker::sample(const CellCurve& curve, LevelCurve& out) const {
     const MonotoneCell& cell = mesh_.cells[static_cast<std::size_t>(curve.cell)];
     const BezierPatch& patch = mesh_.patches[cell.patch];
@@ -276,9 +301,8 @@ void Tracker::sample(const CellCurve& curve, LevelCurve& out) const {
         out.points.push_back(start);
     } else if (length <= resolution_mm && spans < 2) {
         return;
-    } else if (angle_between(out.points.back().tangent, start.tangent) > corner_rad) {
-        out.points.push_back({out.points.back().point, start.tangent});
     }
+    const std::size_t border = out.points.size();
     CurvePoint from = start;
     for (int i = 1; i <= spans; ++i) {
         const double share = static_cast<double>(i) / spans;
@@ -288,6 +312,11 @@ void Tracker::sample(const CellCurve& curve, LevelCurve& out) const {
         from = to;
     }
     out.points.push_back(end);
+    if (border > 1 && is_corner(out.points[border - 2], out.points[border - 1], start.tangent,
+                                out.points[border])) {
+        const CurvePoint after{out.points[border - 1].point, start.tangent};
+        out.points.insert(out.points.begin() + static_cast<std::ptrdiff_t>(border), after);
+    }
 }
 
 }  // namespace

@@ -6,7 +6,8 @@
 //  2. A curve runs along z x n, n = d/du x d/dv (or against it, `forward` false): the solid is on its left.
 //  3. Its points lie on surface and plane within resolution_mm. The cubics through neighbours (between()) stay within
 //     `allowed_mm` of the exact section: checked in the middle of each span of twice the length. Where the section has
-//     a corner, the same point is there twice, with the tangents before and after.
+//     a corner that shows by that much, the same point is there twice, with the tangents before and after; but a closed
+//     curve's first and last point are these two.
 //  4. key is the length along the chords from the curve's first point. A closed curve's last point is its first.
 
 #pragma once
@@ -23,6 +24,7 @@ struct LevelCurve {
     std::vector<double> key;
     bool closed;
     Point2 uv;  // of one of its points
+    bool closes_in_corner = false;
 
     double length_mm() const { return key.back(); }
 };
