@@ -305,15 +305,16 @@ SurfaceSection Cutter::section_at(FaceId id, double z_mm) const {
 void Cutter::add_spans(FaceId id, const SurfaceSection& section, const FaceSpans& paired,
                        Work& work) const {
     const Face& face = model_[id];
+    std::uint32_t straight = paired.forced;
     for (const Span& span : paired.spans) {
         const Point2 start = work.crossings[span.enter].point.head<2>();
         const Point2 end = work.crossings[span.leave].point.head<2>();
         const auto first = static_cast<std::uint32_t>(work.segments.size());
         if (span.component < 0) {
             work.segments.push_back({end});
-        } else {
-            trace(section, span.component, span.from, span.to, start, end, tolerance_,
-                  work.segments);
+        } else if (!trace(section, span.component, span.from, span.to, start, end, tolerance_,
+                          work.segments)) {
+            ++straight;
         }
         const auto count = static_cast<std::uint32_t>(work.segments.size()) - first;
         work.spans.push_back({span.enter, span.leave, first, count, solid_of(id)});
@@ -326,11 +327,11 @@ void Cutter::add_spans(FaceId id, const SurfaceSection& section, const FaceSpans
                    " has no counterpart",
                face.source, work.crossings[c].point);
     }
-    if (paired.forced == 0) return;
+    if (straight == 0) return;
     work.section.diagnostics.push_back(
         {Severity::warning,
          ExitStatus::geometry,
-         "edges lie off the face's surface: " + std::to_string(paired.forced) +
+         "edges lie off the face's surface: " + std::to_string(straight) +
              " of its spans were joined by straight lines",
          {.file = {},
           .line = 0,

@@ -35,8 +35,9 @@ std::size_t place_without_open_span(std::span<const Event> events) {
 }
 
 // Pairs the events of one component; what is left over goes to `rest`.
-void pair_component(std::span<const Event> events, double period, FaceSpans& result,
+void pair_component(std::span<const Event> events, const SurfaceSection& section, FaceSpans& result,
                     std::vector<Event>& rest) {
+    const double period = lyr::period(section, events.front().place.component);
     const std::size_t n = events.size();
     const std::size_t start = period > 0 ? place_without_open_span(events) : 0;
     std::vector<Event> enters, leaves;
@@ -50,8 +51,11 @@ void pair_component(std::span<const Event> events, double period, FaceSpans& res
         double to = leaves[i].place.key;
         const bool whole_turn = enters[i].crossing == leaves[i].crossing && period > 0;
         if (whole_turn && to <= enters[i].place.key) to += period;
-        result.spans.push_back({enters[i].crossing, leaves[i].crossing, enters[i].place.component,
-                                enters[i].place.key, to});
+        const double from = enters[i].place.key;
+        const bool unbroken = is_unbroken(section, from, to);
+        if (!unbroken) ++result.forced;
+        result.spans.push_back({enters[i].crossing, leaves[i].crossing,
+                                unbroken ? enters[i].place.component : -1, from, to});
     }
     rest.insert(rest.end(), enters.begin() + static_cast<std::ptrdiff_t>(pairs), enters.end());
     rest.insert(rest.end(), leaves.begin() + static_cast<std::ptrdiff_t>(pairs), leaves.end());
@@ -90,8 +94,7 @@ FaceSpans pair_crossings(const SurfaceSection& section, std::span<const FaceCros
                events[last].place.component == events[first].place.component) {
             ++last;
         }
-        pair_component(std::span(events).subspan(first, last - first),
-                       period(section, events[first].place.component), result, rest);
+        pair_component(std::span(events).subspan(first, last - first), section, result, rest);
         first = last;
     }
     if (!rest.empty()) join_by_force(rest, result);

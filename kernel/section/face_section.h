@@ -8,7 +8,7 @@
 //  3. Where both stand at one crossing (a seam, used twice by the face), the span goes all the way round.
 //  4. Crossings so close that round-off has exchanged them on the component are still paired in their order.
 //  5. Components with more enters than leaves are joined to those with fewer by a straight span, and counted in
-//     `forced`.
+//     `forced`. So are crossings between which their component does not run.
 
 #pragma once
 

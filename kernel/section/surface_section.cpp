@@ -142,13 +142,17 @@ CurvePoint at(const EllipseSection& ellipse, const Place& place) {
     return {ellipse.centre + c * a + s * b, ellipse.sense * (c * b - s * a).normalized()};
 }
 
+// How far the generator rises, with cos(u) about the middle so that it does not cancel near it.
+double generator_rise(const ConeSection& cone, double cos_u) {
+    return cone.cosine * cone.basis.rise - cone.sine * cone.basis.lean * cos_u;
+}
+
 CurvePoint at(const ConeSection& cone, const Place& place) {
     const double u = cone_angle(cone, place.key), c = std::cos(u), s = std::sin(u);
     const LeaningBasis& basis = cone.basis;
     const Vector3 radial = c * basis.across + s * basis.side;
     const Vector3 generator = cone.cosine * basis.axis + cone.sine * radial;
-    // The generator's rise, with cos(u) about the middle so that it does not cancel near it.
-    const double rise = cone.cosine * basis.rise - cone.sine * basis.lean * c;
+    const double rise = generator_rise(cone, c);
     const Vector3 outward = cone.sense * (cone.cosine * radial - cone.sine * basis.axis);
     return {flat(cone.apex) + cone.height_mm / rise * flat(generator),
             left_of(flat(outward)).normalized()};
@@ -194,6 +198,19 @@ PlaneCurve between(const SurfaceSection& section, int component, double from, do
         there.point += (1 - share) * off_start + share * off_end;
         return there;
     };
+}
+
+// How far an end lies off the component, if that is so far that the span, moved to meet it, would keep nothing of its shape;
+// else 0.
+double distance_astray(const SurfaceSection& section, int component, double from, double to,
+                       const Point2& start, const Point2& end) {
+    constexpr double most_share = 0.25;
+    const Point2 first = at(section, {component, from}).point;
+    const Point2 middle = at(section, {component, (from + to) / 2}).point;
+    const Point2 last = at(section, {component, to}).point;
+    const double reach_mm = std::max((middle - first).norm(), (last - first).norm());
+    const double off_mm = std::max((start - first).norm(), (end - last).norm());
+    return off_mm > most_share * reach_mm ? off_mm : 0;
 }
 
 // In two arcs where one would have a chord too short to say which circle it is of.
@@ -266,19 +283,29 @@ CurvePoint at(const SurfaceSection& section, const Place& place) {
     return std::visit([&](const auto& s) { return at(s, place); }, section);
 }
 
-void trace(const SurfaceSection& section, int component, double from, double to,
+bool is_unbroken(const SurfaceSection& section, double from, double to) {
+    const auto* cone = std::get_if<ConeSection>(&section);
+    if (!cone || cone->closed) return true;
+    // The generators that meet the plane lie together, about the middle.
+    const auto meets = [&](double key) {
+        return cone->height_mm * generator_rise(*cone, std::cos(cone_angle(*cone, key))) > 0;
+    };
+    return meets(from) && meets(to);
+}
+
+bool trace(const SurfaceSection& section, int component, double from, double to,
            const Point2& start, const Point2& end, const Tolerance& tolerance,
            std::vector<Segment>& out) {
     if (const auto* circles = std::get_if<CircleSection>(&section)) {
         const bool left = circles->counter_clockwise[static_cast<std::size_t>(component)];
         trace_circle(section, component, from, to, left ? 1 : -1, start, end, out);
-        return;
+        return true;
     }
     if (const auto* cone = std::get_if<ConeSection>(&section)) {
         if (std::abs(cone->height_mm) <= resolution_mm) {
             out.push_back({flat(cone->apex)});
             out.push_back({end});
-            return;
+            return true;
         }
     }
     const bool straight = std::holds_alternative<LineSection>(section) ||
@@ -286,14 +313,20 @@ void trace(const SurfaceSection& section, int component, double from, double to,
                           std::holds_alternative<TouchSection>(section);
     if (straight || !(to > from)) {
         out.push_back({end});
-        return;
+        return true;
+    }
+    if (const double off_mm = distance_astray(section, component, from, to, start, end);
+        off_mm > 0) {
+        out.push_back({end});
+        return off_mm <= tolerance.trace_mm();
     }
     if (const auto* freeform = std::get_if<FreeformSection>(&section)) {
         trace(*freeform, component, from, to, start, end, tolerance.fit_mm(), out);
-        return;
+        return true;
     }
     fit_arcs(between(section, component, from, to, start, end), from, to, start, end,
              tolerance.fit_mm(), out);
+    return true;
 }
 
 Contour whole_component(const SurfaceSection& section, int component, const Tolerance& tolerance) {

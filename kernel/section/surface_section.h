@@ -11,7 +11,8 @@
 //     tangent of rule 1.
 //  5. trace() appends segments from `start` to `end` (points of the component at these keys, up to the model's
 //     inaccuracy, which is spread evenly over the span): lines for lines, one arc for circles, fitted arcs within
-//     tolerance.fit_mm() for the rest.
+//     tolerance.fit_mm() for the rest. It returns false where an end is so far off its component that only a straight
+//     line could be drawn.
 //
 //   plane      one line
 //   cylinder   across: circle; oblique: ellipse; along: two lines
@@ -129,7 +130,11 @@ int component_count(const SurfaceSection& section);
 double period(const SurfaceSection& section, int component);
 CurvePoint at(const SurfaceSection& section, const Place& place);
 
-void trace(const SurfaceSection& section, int component, double from, double to,
+// False where a branch of a hyperbola goes to infinity between the two keys, or does not reach them: then the crossings that
+// they are of lie on the cone's other half, or off the cone.
+bool is_unbroken(const SurfaceSection& section, double from, double to);
+
+bool trace(const SurfaceSection& section, int component, double from, double to,
            const Point2& start, const Point2& end, const Tolerance& tolerance,
            std::vector<Segment>& out);
 

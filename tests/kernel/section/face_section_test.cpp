@@ -1,6 +1,8 @@
+#include "kernel/section/face_section.h"
+
 #include <doctest/doctest.h>
 
-#include "kernel/section/face_section.h"
+#include <numbers>
 
 using namespace lyr;
 
@@ -65,4 +67,33 @@ TEST_CASE("face section: an enter without a leave is left over, not lost") {
     CHECK(spans.spans.empty());
     REQUIRE(spans.unpaired.size() == 1);
     CHECK(spans.unpaired[0] == 5);
+}
+
+TEST_CASE("section 5: to an end far off its component only a straight line leads (111FACE)") {
+    Frame lying;
+    lying.z = Vector3::UnitY();
+    lying.x = Vector3::UnitZ();
+    lying.y = lying.z.cross(lying.x);
+    // Cut beside the axis: a hyperbola.
+    const SurfaceSection section =
+        section_of(Cone{lying, 3.2, std::numbers::pi / 180}, true, 3.1, 100);
+    REQUIRE(std::holds_alternative<ConeSection>(section));
+    const Point2 start = at(section, {0, -0.27}).point, end = at(section, {0, -0.19}).point;
+    const Vector2 aside(0.3, 1);
+    for (const double off_mm : {0.0, 1e-6, 0.01}) {
+        std::vector<Segment> out;
+        CHECK(trace(section, 0, -0.27, -0.19, start, end + off_mm * aside, {}, out));
+        CHECK(out.back().end == end + off_mm * aside);
+        CHECK(out.size() < 20);
+    }
+    for (const double off_mm : {3.0, 300.0}) {
+        std::vector<Segment> out;
+        CHECK_FALSE(trace(section, 0, -0.27, -0.19, start, end - off_mm * aside, {}, out));
+        REQUIRE(out.size() == 1);
+        CHECK(out[0].end == end - off_mm * aside);
+        CHECK(out[0].sagitta_mm == 0);
+    }
+    CHECK(is_unbroken(section, -0.27, 1.5));
+    CHECK_FALSE(is_unbroken(section, -0.27, 1.6));
+    CHECK_FALSE(is_unbroken(section, -2, 1));
 }
