@@ -2,9 +2,13 @@
 
 #include "parser/import/offset.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string>
+#include <variant>
 
+#include "kernel/geometry/bspline_offset.h"
 #include "kernel/geometry/tolerance.h"
 #include "parser/import/placement.h"
 
@@ -54,10 +58,42 @@ struct Offset {
     }
 };
 
+Diagnostic failed(const File& file, InstanceIndex instance, InstanceIndex basis,
+                  OffsetFailure failure) {
+    const auto why = [&]() -> std::string {
+        switch (failure) {
+            case OffsetFailure::folded:
+                return " has a smaller radius of curvature than that somewhere: the offset folds";
+            case OffsetFailure::creased:
+                return " has a crease: the offset has a gap";
+            case OffsetFailure::unreachable:
+                return " has no normal somewhere, or the offset all but folds";
+        }
+        return "";
+    };
+    return file.error(instance, named(file, instance) + ": " + named(file, basis) + why(),
+                      ExitStatus::geometry);
+}
+
+// What the boundary of an offset needs of the basis, which is that far away.
+Boundary reaching(const Boundary& boundary, double distance_mm) {
+    return [=] {
+        std::vector<Point3> points;
+        for (const Point3& p : boundary()) {
+            points.push_back(p);
+            for (int i = 0; i < 3; ++i) {
+                points.emplace_back(p + distance_mm * Vector3::Unit(i));
+                points.emplace_back(p - distance_mm * Vector3::Unit(i));
+            }
+        }
+        return points;
+    };
+}
+
 }  // namespace
 
-Result<StatedSurface> read_offset(const File& file, InstanceIndex instance, const Units& units,
-                                  const Boundary& boundary, part21::Trail& trail) {
+Result<StatedOffset> read_stated_offset(const File& file, InstanceIndex instance,
+                                        const Units& units, part21::Trail& trail) {
     // name, basis_surface, distance, self_intersect
     Fields fields(file, instance, 4);
     const InstanceIndex basis = fields.reference(1);
@@ -65,13 +101,32 @@ Result<StatedSurface> read_offset(const File& file, InstanceIndex instance, cons
     if (!fields.ok()) return fields.error();
     if (!std::isfinite(distance_mm))
         return file.error(instance, named(file, instance) + ": a finite distance expected");
+    if (keyword(file, basis) != "OFFSET_SURFACE") return StatedOffset{basis, distance_mm};
+    const auto step = trail.enter(basis);
+    if (!step) return step.error();
+    const Result<StatedOffset> inner = read_stated_offset(file, basis, units, trail);
+    if (!inner) return inner;
+    return StatedOffset{inner->basis, inner->distance_mm + distance_mm};
+}
+
+Result<StatedSurface> read_offset(const File& file, InstanceIndex instance, const Units& units,
+                                  const Boundary& boundary, part21::Trail& trail) {
+    const Result<StatedOffset> offset_of = read_stated_offset(file, instance, units, trail);
+    if (!offset_of) return offset_of.error();
+    const auto [basis, distance_mm] = *offset_of;
     const Result<StatedSurface> surface =
-        read_surface(file, instance, basis, units, boundary, trail);
+        read_surface(file, instance, basis, units, reaching(boundary, distance_mm), trail);
     if (!surface) return surface;
-    if (std::holds_alternative<SharedBSplineSurface>(surface->surface)) {
-        return unsupported(file, instance, "the offset of a free-form " + named(file, basis));
-    }
     const double along_normal_mm = surface->same_sense ? distance_mm : -distance_mm;
+    if (const auto* spline = std::get_if<SharedBSplineSurface>(&surface->surface)) {
+        auto result =
+            offset(**spline, along_normal_mm, std::max(resolution_mm, units.uncertainty_mm));
+        if (const auto* failure = std::get_if<OffsetFailure>(&result))
+            return failed(file, instance, basis, *failure);
+        StatedSurface whole = stated(std::get<BSplineSurface>(std::move(result)));
+        whole.same_sense = surface->same_sense;
+        return whole;
+    }
     const auto result = std::visit(Offset{*surface, along_normal_mm}, surface->surface);
     if (!result) {
         return file.error(instance,

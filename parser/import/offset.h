@@ -1,9 +1,10 @@
-// OFFSET_SURFACE and OFFSET_CURVE_3D, where what they amount to is an elementary surface or curve again.
+// OFFSET_SURFACE and OFFSET_CURVE_3D.
 //
 // Contract
-//  1. Surfaces: planes, cylinders, cones, spheres, tori, along their normal as the file gives it. Curves: lines, and
-//     circles whose plane is square to the reference direction. Anything else is an error, status unsupported.
-//  2. What is offset by so much that nothing of it is left (a cylinder to its axis) is an error.
+//  1. Surfaces go along their normal as the file gives it: planes, cylinders, cones, spheres and tori become such again,
+//     free-form ones B-splines (bspline_offset.h). Offsets of offsets add up.
+//  2. What is offset by so much that nothing of it is left (a cylinder to its axis), or that it folds, is an error, status
+//     geometry for the latter; an offset with a gap, at a crease wider than the file's uncertainty, too.
 
 #pragma once
 
@@ -11,6 +12,14 @@
 #include "parser/import/surfaces.h"
 
 namespace lyr::importer {
+
+// Down to what is no offset itself.
+struct StatedOffset {
+    InstanceIndex basis;
+    double distance_mm;
+};
+Result<StatedOffset> read_stated_offset(const File& file, InstanceIndex instance,
+                                        const Units& units, part21::Trail& trail);
 
 Result<StatedSurface> read_offset(const File& file, InstanceIndex instance, const Units& units,
                                   const Boundary& boundary, part21::Trail& trail);

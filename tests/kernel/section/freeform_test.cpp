@@ -4,6 +4,7 @@
 
 #include "kernel/brep/placement.h"
 #include "kernel/freeform_solids.h"
+#include "kernel/geometry/bspline_offset.h"
 #include "kernel/geometry/random_curves.h"
 #include "kernel/section/cutter.h"
 #include "kernel/section_figures.h"
@@ -143,6 +144,48 @@ TEST_CASE("free-form: balls and rings that are one closed face, in every positio
                 allowed += step * length_of(section) * tolerance.total_mm;
             }
             CHECK(std::abs(sum - solid.volume_mm3) < 2e-4 * solid.volume_mm3 + allowed);
+        }
+    }
+}
+
+TEST_CASE("free-form: an offset of a ball or a ring cuts like the ball or ring of that size") {
+    const auto grown = [](const BSplineSurface& surface, double distance_mm) {
+        return whole(std::get<BSplineSurface>(offset(surface, distance_mm)));
+    };
+    const Tolerance tolerance{0.001};
+    const Point3 centre(1, -2, 3);
+    const Vector3 axis = Vector3(1, 2, -0.5).normalized();
+    const Eigen::Affine3d position =
+        Eigen::Translation3d(centre) * Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), axis);
+    for (const double distance_mm : {-2.5, 0.75}) {
+        CAPTURE(distance_mm);
+        const double radius_mm = 5 + distance_mm;
+        const BSplineSurface ball = spun(Circle{upright(Point3::Zero()), 5}, -pi / 2, pi / 2);
+        const Model model = transformed(grown(ball, distance_mm), position);
+        const Cutter cutter(model, tolerance);
+        CHECK(std::abs(cutter.height_range().top_mm - centre.z() - radius_mm) < resolution_mm);
+        for (int i = 0; i < 40; ++i) {
+            const double z = radius_mm * ((i + 0.5) / 20 - 1);
+            const Section section = cutter.cut(centre.z() + z);
+            CHECK(section.open == 0);
+            CHECK(std::abs(area_of(section) - pi * (radius_mm * radius_mm - z * z)) <
+                  tolerance.total_mm * length_of(section));
+        }
+    }
+    for (const double distance_mm : {-0.5, 1.5}) {
+        CAPTURE(distance_mm);
+        const double tube_mm = 2 + distance_mm;
+        const BSplineSurface ring = spun(Circle{upright({6, 0, 0}), 2}, -pi, pi);
+        const Model model = grown(ring, distance_mm);
+        const Cutter cutter(model, tolerance);
+        for (int i = 0; i < 40; ++i) {
+            const double z = tube_mm * ((i + 0.5) / 20 - 1);
+            const Section section = cutter.cut(z);
+            CHECK(section.open == 0);
+            // Between two circles, whose radii add up to 12.
+            const double width_mm = 2 * std::sqrt(tube_mm * tube_mm - z * z);
+            CHECK(std::abs(area_of(section) - pi * 12 * width_mm) <
+                  tolerance.total_mm * length_of(section));
         }
     }
 }

@@ -478,13 +478,87 @@ TEST_CASE("1: offsets of elementary surfaces") {
 
     CHECK(mentions(refused(face_step(offset("SPHERICAL_SURFACE", ",3.", -3), corners)),
                    "nothing is left"));
-    const Write free_form = [](StepText& step) {
-        const int basis = simple_hill("BEZIER_SURFACE", "")(step);
-        return step.add("OFFSET_SURFACE(''," + StepText::ref(basis) + ",1.,.F.)");
+}
+
+namespace {
+
+Write offset_of(const Write& basis, double distance) {
+    return [=](StepText& step) {
+        return step.add("OFFSET_SURFACE(''," + StepText::ref(basis(step)) + "," +
+                        StepText::num(distance) + ",.F.)");
     };
-    const Diagnostic error = refused(face_step(free_form, hill_corners));
-    CHECK(error.status == ExitStatus::unsupported);
-    CHECK(mentions(error, "OFFSET_SURFACE #"));
+}
+
+}  // namespace
+
+TEST_CASE("offset 1: of a free-form surface, along the normal that the file gives it") {
+    const Write basis = simple_hill("BEZIER_SURFACE", "");
+    const Face face = face_on(basis, hill_corners);
+    for (const double distance : {-0.03, 0.05}) {
+        const Face moved = face_on(offset_of(basis, distance), hill_corners);
+        // What is offset back and forth is offset by the sum.
+        const Face twice = face_on(offset_of(offset_of(basis, -4), distance + 4), hill_corners);
+        for (const Point2& uv : {Point2(0, 0), Point2(0.3, 0.8), Point2(0.5, 0.5), Point2(1, 1)}) {
+            const Point3 p = evaluate(face.surface, uv);
+            const Point3 q = p + distance * stated_normal(face, p);
+            CHECK(is_on(moved, q));
+            CHECK(is_on(twice, q));
+            CHECK((stated_normal(moved, q) - stated_normal(face, p)).norm() < 1e-5);
+        }
+    }
+}
+
+TEST_CASE("offset 1: of swept surfaces, which reach as far as the offset's own boundary") {
+    // A parabola y = x^2 / 4, extruded along z.
+    const Write parabola = [](StepText& step) {
+        const int at = step.placement({0, 0, 0}, Vector3::UnitZ(), Vector3::UnitY());
+        return step.add("PARABOLA(''," + StepText::ref(at) + ",1.)");
+    };
+    const Vector3 out = Vector3(4, -2, 0).normalized();  // at (4, 4)
+    for (const double distance : {-3.0, 3.0}) {
+        const Point3 p = Point3(4, 4, 0) + distance * out, q(-p.x(), p.y(), 0);
+        const std::vector<Point3> corners{p, q, q + 2 * Vector3::UnitZ(), p + 2 * Vector3::UnitZ()};
+        const Write basis = extrusion(parabola, Vector3::UnitZ());
+        const Face plain = face_on(basis, {{4, 4, 0}, {-4, 4, 0}, {-4, 4, 2}});
+        const double along = stated_normal(plain, {4, 4, 0}).dot(out) * distance;
+        if (distance > 0) {
+            const Face face = face_on(offset_of(basis, along), corners);
+            for (const Point3& corner : corners) CHECK(is_on(face, corner));
+        } else {
+            // Its radius of curvature is 2 at the apex.
+            const Diagnostic error = refused(face_step(offset_of(basis, along), corners));
+            CHECK(error.status == ExitStatus::geometry);
+            CHECK(mentions(error, "OFFSET_SURFACE #"));
+            CHECK(mentions(error, "folds"));
+        }
+    }
+}
+
+TEST_CASE(
+    "offset 2: a crease, a fold and a circle of references are errors that name the surface") {
+    const Write roof = [](StepText& step) {
+        std::string text = "B_SPLINE_SURFACE_WITH_KNOTS('',1,1,";
+        text += net_text(step,
+                         {{{0, 0, 0}, {0, 5, 0}}, {{4, 0, 3}, {4, 5, 3}}, {{8, 0, 0}, {8, 5, 0}}});
+        return step.add(text + net_tail + ",(2,1,2),(2,2),(0.,1.,2.),(0.,1.),.UNSPECIFIED.)");
+    };
+    const Diagnostic creased = refused(face_step(offset_of(roof, 0.5), hill_corners));
+    CHECK(creased.status == ExitStatus::geometry);
+    CHECK(mentions(creased, "OFFSET_SURFACE #"));
+    CHECK(mentions(creased, "crease"));
+    const Diagnostic folded =
+        refused(face_step(offset_of(simple_hill("BEZIER_SURFACE", ""), -40), hill_corners));
+    const Diagnostic other =
+        refused(face_step(offset_of(simple_hill("BEZIER_SURFACE", ""), 40), hill_corners));
+    CHECK((mentions(folded, "folds") && mentions(other, "folds")));
+    const Diagnostic cycle = refused(face_step(
+        [](StepText& step) {
+            const int id = step.reserve();
+            step.define(id, "OFFSET_SURFACE(''," + StepText::ref(id) + ",1.,.F.)");
+            return id;
+        },
+        hill_corners));
+    CHECK(mentions(cycle, "refers to itself"));
 }
 
 TEST_CASE("1: a surface that is its own basis is an error") {
