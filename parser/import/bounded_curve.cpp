@@ -39,34 +39,13 @@ Result<Trim> read_trim(Fields& fields, std::size_t index) {
     return trim;
 }
 
-// How long a step of one is along a curve's own parameter, in the kernel's.
-Result<double> parameter_scale(const File& file, InstanceIndex curve, const Curve& read,
-                               const Units& units) {
-    if (std::holds_alternative<Circle>(read) || std::holds_alternative<Ellipse>(read))
-        return units.angle_rad;
-    if (!std::holds_alternative<Line>(read)) return 1.0;
-    Fields fields(file, curve, 3);
-    const InstanceIndex vector = fields.reference(2);
-    if (!fields.ok()) return fields.error();
-    Fields vector_fields(file, vector, 3);
-    const double magnitude = vector_fields.real(2);
-    if (!vector_fields.ok()) return vector_fields.error();
-    return std::abs(magnitude) * units.length_mm;
-}
-
 Result<double> parameter_of(const File& file, InstanceIndex trimmed, const Trim& trim,
                             InstanceIndex basis, const DirectedCurve& curve, bool prefer_parameter,
                             const Units& units) {
     if (trim.parameter && (prefer_parameter || !trim.point.valid())) {
-        // Of a curve that stands for another one with its own parameter, only the points are known.
-        const std::string_view type = keyword(file, basis);
-        const bool is_own = curve.same_sense && type != "TRIMMED_CURVE" && !is_composite(type) &&
-                            type != "PCURVE" && type != "OFFSET_CURVE_3D";
-        if (is_own) {
-            const Result<double> scale = parameter_scale(file, basis, curve.curve, units);
-            if (!scale) return scale.error();
-            return *scale * *trim.parameter;
-        }
+        const Result<std::optional<double>> scale = parameter_scale(file, basis, curve, units);
+        if (!scale) return scale.error();
+        if (*scale) return **scale * *trim.parameter;
     }
     if (!trim.point.valid())
         return unsupported(file, trimmed, "a trim of " + named(file, basis) + " by parameters");
@@ -117,6 +96,25 @@ BSplineCurve as_spline(const BoundedCurve& piece) {
 }
 
 }  // namespace
+
+Result<std::optional<double>> parameter_scale(const File& file, InstanceIndex curve,
+                                              const DirectedCurve& read, const Units& units) {
+    const std::string_view type = keyword(file, curve);
+    const bool is_own = read.same_sense && type != "TRIMMED_CURVE" && !is_composite(type) &&
+                        !file.is(curve, "PCURVE") && type != "BOUNDED_PCURVE" &&
+                        type != "OFFSET_CURVE_3D" && type != "OFFSET_CURVE_2D";
+    if (!is_own) return std::optional<double>();
+    if (std::holds_alternative<Circle>(read.curve) || std::holds_alternative<Ellipse>(read.curve))
+        return std::optional(units.angle_rad);
+    if (!std::holds_alternative<Line>(read.curve)) return std::optional(1.0);
+    Fields fields(file, curve, 3);
+    const InstanceIndex vector = fields.reference(2);
+    if (!fields.ok()) return fields.error();
+    Fields vector_fields(file, vector, 3);
+    const double magnitude = vector_fields.real(2);
+    if (!vector_fields.ok()) return vector_fields.error();
+    return std::optional(std::abs(magnitude) * units.length_mm);
+}
 
 Result<BoundedCurve> read_bounded_curve(const File& file, InstanceIndex user, InstanceIndex curve,
                                         const Units& units, part21::Trail& trail) {

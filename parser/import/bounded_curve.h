@@ -2,7 +2,10 @@
 
 #pragma once
 
+#include <optional>
+
 #include "kernel/geometry/curve.h"
+#include "parser/import/curves.h"
 #include "parser/import/entity.h"
 #include "parser/import/units.h"
 
@@ -16,6 +19,11 @@ struct BoundedCurve {
     Point3 start() const { return evaluate(curve, from); }
     Point3 end() const { return evaluate(curve, to); }
 };
+
+// How long a step of one along a curve's parameter in the file is in the kernel's. None of a curve that stands for
+// another one, with parameters of its own.
+Result<std::optional<double>> parameter_scale(const File& file, InstanceIndex curve,
+                                              const DirectedCurve& read, const Units& units);
 
 // TRIMMED_CURVE, by its trimming parameters or points as its master representation prefers; whole B-splines,
 // polylines, composite curves, circles and ellipses; curves on surfaces by their curve in space. A curve without ends

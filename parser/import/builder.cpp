@@ -388,7 +388,8 @@ Result<EdgeId> Builder::edge_of(InstanceIndex instance) {
     if (!start) return start.error();
     const Result<VertexId> end = vertex_of(instance, to);
     if (!end) return end.error();
-    Result<DirectedCurve> curve = read_curve(file_, instance, geometry, units_, trail_);
+    const Ends ends{model_[*start].point, model_[*end].point, same_sense};
+    Result<DirectedCurve> curve = read_curve(file_, instance, geometry, units_, trail_, ends);
     if (!curve) return curve.error();
     const EdgeId id(model_.edges.size());
     model_.edges.push_back(make_edge(curve->curve, *start, *end, same_sense == curve->same_sense,

@@ -87,39 +87,41 @@ Result<DirectedCurve> directed(Result<BSplineCurve> curve) {
 }
 
 Result<DirectedCurve> read_trimmed(const File& file, InstanceIndex instance, const Units& units,
-                                   part21::Trail& trail) {
+                                   part21::Trail& trail, std::optional<Ends> ends) {
     Fields fields(file, instance, 6);
     const InstanceIndex basis = fields.reference(1);
     const bool agrees = fields.boolean(4);
     if (!fields.ok()) return fields.error();
-    Result<DirectedCurve> curve = read_curve(file, instance, basis, units, trail);
+    if (ends && !agrees) ends->same_sense = !ends->same_sense;
+    Result<DirectedCurve> curve = read_curve(file, instance, basis, units, trail, ends);
     if (curve && !agrees) curve->same_sense = !curve->same_sense;
     return curve;
 }
 
 Result<DirectedCurve> read_on_surface(const File& file, InstanceIndex instance,
                                       std::string_view type, const Units& units,
-                                      part21::Trail& trail) {
+                                      part21::Trail& trail, const std::optional<Ends>& ends) {
     if (!file.is_complex(instance)) {
         Fields fields(file, instance, 4);
         const InstanceIndex in_space = fields.reference(1);
         if (!fields.ok()) return fields.error();
-        return read_curve(file, instance, in_space, units, trail);
+        return read_curve(file, instance, in_space, units, trail, ends);
     }
     Attributes a(file, instance, type, 1, 3);
     const InstanceIndex in_space = a.fields.reference(a.first);
     if (!a.fields.ok()) return a.fields.error();
-    return read_curve(file, instance, in_space, units, trail);
+    return read_curve(file, instance, in_space, units, trail, ends);
 }
 
 Result<DirectedCurve> read_replica(const File& file, InstanceIndex instance, const Units& units,
-                                   part21::Trail& trail) {
+                                   part21::Trail& trail, std::optional<Ends> ends) {
     Fields fields(file, instance, 3);
     const InstanceIndex parent = fields.reference(1), transformation = fields.reference(2);
     if (!fields.ok()) return fields.error();
     const Result<Eigen::Affine3d> to = read_transform(file, instance, transformation, units);
     if (!to) return to.error();
-    Result<DirectedCurve> curve = read_curve(file, instance, parent, units, trail);
+    if (ends) ends = Ends{to->inverse() * ends->start, to->inverse() * ends->end, ends->same_sense};
+    Result<DirectedCurve> curve = read_curve(file, instance, parent, units, trail, ends);
     if (curve) curve->curve = transformed(curve->curve, *to);
     return curve;
 }
@@ -127,21 +129,24 @@ Result<DirectedCurve> read_replica(const File& file, InstanceIndex instance, con
 }  // namespace
 
 Result<DirectedCurve> read_curve(const File& file, InstanceIndex user, InstanceIndex curve,
-                                 const Units& units, part21::Trail& trail) {
+                                 const Units& units, part21::Trail& trail,
+                                 const std::optional<Ends>& ends) {
     const auto step = trail.enter(curve);
     if (!step) return step.error();
     const std::string_view type = keyword(file, curve);
     if (is_elementary(type)) return directed(read_elementary(file, curve, type, units));
     if (is_bspline_curve(file, curve)) return directed(read_bspline_curve(file, curve, units));
     if (is_on_surface(type) || file.is(curve, "SURFACE_CURVE")) {
-        return read_on_surface(file, curve, "SURFACE_CURVE", units, trail);
+        return read_on_surface(file, curve, "SURFACE_CURVE", units, trail, ends);
     }
-    if (type == "TRIMMED_CURVE") return read_trimmed(file, curve, units, trail);
+    if (type == "TRIMMED_CURVE") return read_trimmed(file, curve, units, trail, ends);
     if (type == "POLYLINE") return directed(read_polyline(file, curve, units));
     if (is_composite(type)) return directed(read_composite(file, curve, units, trail));
-    if (type == "OFFSET_CURVE_3D") return read_offset_curve(file, curve, units, trail);
-    if (type == "PCURVE" || type == "BOUNDED_PCURVE") return read_pcurve(file, curve, units, trail);
-    if (type == "CURVE_REPLICA") return read_replica(file, curve, units, trail);
+    if (type == "OFFSET_CURVE_3D" || (type == "OFFSET_CURVE_2D" && units.dimension == 2))
+        return read_offset_curve(file, curve, units, trail, ends);
+    if (type == "BOUNDED_PCURVE" || file.is(curve, "PCURVE"))
+        return read_pcurve(file, curve, units, trail, ends);
+    if (type == "CURVE_REPLICA") return read_replica(file, curve, units, trail, ends);
     const bool is_curve =
         type.empty() || type.find("CURVE") != std::string_view::npos || type == "CLOTHOID";
     if (!is_curve) return unexpected(file, user, "a curve", curve);

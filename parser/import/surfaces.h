@@ -3,7 +3,8 @@
 // Contract
 //  1. PLANE, CYLINDRICAL_, CONICAL_, SPHERICAL_, TOROIDAL_ and DEGENERATE_TOROIDAL_SURFACE; B_SPLINE_SURFACE in all its
 //     forms; swept surfaces (swept.h); RECTANGULAR_TRIMMED_ and CURVE_BOUNDED_SURFACE by their basis, for it is the
-//     face's loops that bound; SURFACE_REPLICA; OFFSET_SURFACE (offset.h). Anything else is an error, status unsupported.
+//     face's loops that bound; SURFACE_REPLICA; OFFSET_SURFACE (offset.h). Anything else is an error, status
+//     unsupported.
 //  2. The kernel's cone opens along its axis from a radius >= 0: a negative semi-angle turns the axis around, a
 //     negative radius moves the origin to the apex. A semi-angle of zero is a cylinder.
 //  3. A B-spline surface that is flat to within resolution_mm is a plane.

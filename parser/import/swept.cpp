@@ -148,8 +148,8 @@ Result<StatedSurface> spline_revolution(const File& file, InstanceIndex instance
 
 }  // namespace
 
-Result<StatedSurface> read_extrusion(const File& file, InstanceIndex instance, const Units& units,
-                                     const Boundary& boundary, part21::Trail& trail) {
+Result<StatedExtrusion> read_stated_extrusion(const File& file, InstanceIndex instance,
+                                              const Units& units) {
     // name, swept_curve, extrusion_axis
     Fields fields(file, instance, 3);
     const InstanceIndex swept = fields.reference(1), vector = fields.reference(2);
@@ -159,10 +159,30 @@ Result<StatedSurface> read_extrusion(const File& file, InstanceIndex instance, c
     const InstanceIndex orientation = vector_fields.reference(1);
     const double magnitude = vector_fields.real(2);
     if (!vector_fields.ok()) return vector_fields.error();
-    const Result<Vector3> stated_direction = read_direction(file, vector, orientation, units);
-    if (!stated_direction) return stated_direction.error();
-    const Vector3 direction = magnitude < 0 ? Vector3(-*stated_direction) : *stated_direction;
-    const Result<DirectedCurve> directed = read_curve(file, instance, swept, units, trail);
+    const Result<Vector3> direction = read_direction(file, vector, orientation, units);
+    if (!direction) return direction.error();
+    return StatedExtrusion{swept, magnitude < 0 ? Vector3(-*direction) : *direction,
+                           std::abs(magnitude) * units.length_mm};
+}
+
+Result<StatedRevolution> read_stated_revolution(const File& file, InstanceIndex instance,
+                                                const Units& units) {
+    // name, swept_curve, axis_position
+    Fields fields(file, instance, 3);
+    const InstanceIndex swept = fields.reference(1), position = fields.reference(2);
+    if (!fields.ok()) return fields.error();
+    const Result<Frame> axis = read_axis(file, instance, position, units);
+    if (!axis) return axis.error();
+    return StatedRevolution{swept, *axis};
+}
+
+Result<StatedSurface> read_extrusion(const File& file, InstanceIndex instance, const Units& units,
+                                     const Boundary& boundary, part21::Trail& trail) {
+    const Result<StatedExtrusion> extrusion = read_stated_extrusion(file, instance, units);
+    if (!extrusion) return extrusion.error();
+    const Vector3& direction = extrusion->direction;
+    const Result<DirectedCurve> directed =
+        read_curve(file, instance, extrusion->swept, units, trail);
     if (!directed) return directed.error();
     const Curve curve = simplified(directed->curve);
     const auto* line = std::get_if<Line>(&curve);
@@ -180,12 +200,9 @@ Result<StatedSurface> read_extrusion(const File& file, InstanceIndex instance, c
 
 Result<StatedSurface> read_revolution(const File& file, InstanceIndex instance, const Units& units,
                                       const Boundary& boundary, part21::Trail& trail) {
-    // name, swept_curve, axis_position
-    Fields fields(file, instance, 3);
-    const InstanceIndex swept = fields.reference(1), position = fields.reference(2);
-    if (!fields.ok()) return fields.error();
-    const Result<Frame> axis = read_axis(file, instance, position, units);
-    if (!axis) return axis.error();
+    const Result<StatedRevolution> revolution = read_stated_revolution(file, instance, units);
+    if (!revolution) return revolution.error();
+    const auto& [swept, axis] = *revolution;
     const Result<DirectedCurve> directed = read_curve(file, instance, swept, units, trail);
     if (!directed) return directed.error();
     std::optional<Point3> hint;
@@ -198,15 +215,15 @@ Result<StatedSurface> read_revolution(const File& file, InstanceIndex instance, 
     const Curve curve = simplified(directed->curve);
     std::optional<StatedSurface> surface;
     if (const auto* line = std::get_if<Line>(&curve)) {
-        surface = turned_line(*line, *axis);
-        const bool is_axis = line->direction.cross(axis->z).norm() <= angular_resolution_rad;
+        surface = turned_line(*line, axis);
+        const bool is_axis = line->direction.cross(axis.z).norm() <= angular_resolution_rad;
         if (!surface && is_axis) return degenerate(file, instance);
     } else if (const auto* circle = std::get_if<Circle>(&curve)) {
-        surface = turned_circle(*circle, *axis, hint);
+        surface = turned_circle(*circle, axis, hint);
     }
     if (!surface) {
         const Result<StatedSurface> spline =
-            spline_revolution(file, instance, curve, *axis, boundary(), hint);
+            spline_revolution(file, instance, curve, axis, boundary(), hint);
         if (!spline) return spline.error();
         surface = *spline;
     }

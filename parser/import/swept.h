@@ -14,6 +14,23 @@
 
 namespace lyr::importer {
 
+// What the file says: a point of the surface is one of the curve moved by v times the length along the direction, or
+// turned by u about the axis (the frame's z).
+struct StatedExtrusion {
+    InstanceIndex swept;
+    Vector3 direction;  // unit length
+    double length_mm;
+};
+Result<StatedExtrusion> read_stated_extrusion(const File& file, InstanceIndex instance,
+                                              const Units& units);
+
+struct StatedRevolution {
+    InstanceIndex swept;
+    Frame axis;
+};
+Result<StatedRevolution> read_stated_revolution(const File& file, InstanceIndex instance,
+                                                const Units& units);
+
 Result<StatedSurface> read_extrusion(const File& file, InstanceIndex instance, const Units& units,
                                      const Boundary& boundary, part21::Trail& trail);
 

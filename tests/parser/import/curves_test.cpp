@@ -289,6 +289,11 @@ TEST_CASE("1: offset and moved curves") {
     const Edge outer =
         edge_on(offset(circle, 0.5, -Vector3::UnitZ()), {2.5, 0, 0}, {0, 2.5, 0}, true);
     CHECK(std::get<Circle>(outer.curve).radius_mm == 2.5);
+    // Beyond the centre a circle begins on the other side.
+    const Edge beyond = edge_on(offset(circle, 5, Vector3::UnitZ()), {-3, 0, 0}, {0, -3, 0}, true);
+    CHECK(std::get<Circle>(beyond.curve).radius_mm == 3);
+    CHECK(near(evaluate(beyond.curve, 0.5 * (beyond.t_start + beyond.t_end)),
+               {-3 * std::sqrt(0.5), -3 * std::sqrt(0.5), 0}));
     const Edge replica = edge_on(
         [](StepText& step) {
             const int parent = circle(step), at = step.point({7, 0, 0});
@@ -299,4 +304,86 @@ TEST_CASE("1: offset and moved curves") {
         },
         {11, 0, 0}, {7, 4, 0}, true);
     CHECK(std::get<Circle>(replica.curve).radius_mm == doctest::Approx(4));
+}
+
+namespace {
+
+struct Basis {
+    std::string name;
+    std::function<int(StepText&)> write;
+    std::function<Point3(double)> at;
+    double from, to;
+};
+
+std::vector<Basis> bases_of_offsets() {
+    const auto conic = [](const std::string& type, const std::string& sizes) {
+        return [=](StepText& step) {
+            const int at = step.placement({1, 2, 3}, Vector3::UnitZ(), Vector3::UnitX());
+            return step.add(type + "(''," + StepText::ref(at) + sizes + ")");
+        };
+    };
+    const std::vector<Point3> points{{0, 0, 0}, {3, 1, 1}, {5, 4, 0}, {9, 5, 2}};
+    const auto spline = [=](StepText& step) {
+        std::vector<int> ids;
+        for (const Point3& p : points) ids.push_back(step.point(p));
+        return step.add("BEZIER_CURVE('',3," + StepText::refs(ids) + ",.UNSPECIFIED.,.F.,.U.)");
+    };
+    const auto spline_at = [=](double t) -> Point3 {
+        const double r = 1 - t;
+        return r * r * r * points[0] + 3 * r * r * t * points[1] + 3 * r * t * t * points[2] +
+               t * t * t * points[3];
+    };
+    const auto on_circle = [](double t) {
+        return Point3(1 + 2 * std::cos(t), 2 + 2 * std::sin(t), 3);
+    };
+    const auto on_ellipse = [](double t) {
+        return Point3(1 + 5 * std::cos(t), 2 + 3 * std::sin(t), 3);
+    };
+    const auto on_parabola = [](double t) { return Point3(1 + 2 * t * t, 2 + 4 * t, 3); };
+    const auto on_hyperbola = [](double t) {
+        return Point3(1 + 4 * std::cosh(t), 2 + 3 * std::sinh(t), 3);
+    };
+    return {{"circle", conic("CIRCLE", ",2."), on_circle, 0.5, 5},
+            {"ellipse", conic("ELLIPSE", ",5.,3."), on_ellipse, 0.5, 5},
+            {"parabola", conic("PARABOLA", ",2."), on_parabola, -1, 1.5},
+            {"hyperbola", conic("HYPERBOLA", ",4.,3."), on_hyperbola, -1, 1},
+            {"spline", spline, spline_at, 0.05, 0.95}};
+}
+
+}  // namespace
+
+TEST_CASE("offset 2: every curve goes along the reference direction x its tangent") {
+    const Vector3 leaning = Vector3(0.3, -0.2, 1).normalized();
+    for (const Basis& basis : bases_of_offsets()) {
+        CAPTURE(basis.name);
+        for (const Vector3& reference : {Vector3(Vector3::UnitZ()), Vector3(-leaning), leaning}) {
+            for (const double distance : {-0.7, 0.4}) {
+                const auto exact = [&](double t) -> Point3 {
+                    // By fourth-order differences: exact to 1e-10.
+                    constexpr double h = 1e-3;
+                    const Vector3 tangent = 8 * (basis.at(t + h) - basis.at(t - h)) -
+                                            (basis.at(t + 2 * h) - basis.at(t - 2 * h));
+                    return basis.at(t) + distance * reference.cross(tangent).normalized();
+                };
+                const auto write = [&](StepText& step) {
+                    const int curve = basis.write(step), direction = step.direction(reference);
+                    return step.add("OFFSET_CURVE_3D(''," + StepText::ref(curve) + "," +
+                                    StepText::num(distance) + ",.F.," + StepText::ref(direction) +
+                                    ")");
+                };
+                for (const bool along : {true, false}) {
+                    const double a = along ? basis.from : basis.to;
+                    const double b = along ? basis.to : basis.from;
+                    const Edge edge = edge_on(write, exact(a), exact(b), along);
+                    CHECK(near(evaluate(edge.curve, edge.t_start), exact(a)));
+                    CHECK(near(evaluate(edge.curve, edge.t_end), exact(b)));
+                    for (int i = 0; i <= 100; ++i) {
+                        const Point3 p = exact(a + (b - a) * i / 100);
+                        const double t = invert(edge.curve, p);
+                        CHECK((evaluate(edge.curve, t) - p).norm() <= resolution_mm / 2);
+                    }
+                }
+            }
+        }
+    }
 }
