@@ -10,7 +10,7 @@
 #include "kernel/brep/model.h"
 #include "kernel/geometry/tolerance.h"
 #include "parser/import/import.h"
-#include "step_text.h"
+#include "parser/import/step_text.h"
 
 namespace lyr::test {
 
