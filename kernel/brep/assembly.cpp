@@ -2,6 +2,8 @@
 
 #include "kernel/brep/assembly.h"
 
+#include <algorithm>
+#include <cstdint>
 #include <utility>
 
 namespace lyr {
@@ -60,6 +62,11 @@ void copy_edges(const Model& from, Model& to) {
     }
 }
 
+template <class Tag>
+TypedIndex<Tag> shifted(TypedIndex<Tag> id, std::uint32_t by) {
+    return TypedIndex<Tag>(std::size_t{id.value} + by);
+}
+
 }  // namespace
 
 ShellPlan plan_of(const Model& model, ShellId id) {
@@ -96,6 +103,40 @@ Model assembled(const Model& model, const std::vector<SolidPlan>& solids) {
     }
     copy_edges(model, result);
     return result;
+}
+
+void append(Model& model, Model part) {
+    const std::uint32_t vertices = count(model.vertices), edges = count(model.edges),
+                        coedges = count(model.coedges), loops = count(model.loops),
+                        faces = count(model.faces), shells = count(model.shells),
+                        solids = count(model.solids);
+    for (Vertex& vertex : part.vertices) model.vertices.push_back(std::move(vertex));
+    for (Edge& edge : part.edges) {
+        edge.start = shifted(edge.start, vertices);
+        edge.end = shifted(edge.end, vertices);
+        model.edges.push_back(std::move(edge));
+    }
+    for (Coedge& coedge : part.coedges)
+        model.coedges.push_back({shifted(coedge.edge, edges), coedge.reversed});
+    for (Loop& loop : part.loops) {
+        loop.first_coedge += coedges;
+        model.loops.push_back(loop);
+    }
+    for (Face& face : part.faces) {
+        face.first_loop += loops;
+        face.shell = shifted(face.shell, shells);
+        model.faces.push_back(std::move(face));
+    }
+    for (Shell& shell : part.shells) {
+        shell.first_face += faces;
+        shell.solid = shifted(shell.solid, solids);
+        model.shells.push_back(shell);
+    }
+    for (Solid& solid : part.solids) {
+        solid.first_shell += shells;
+        model.solids.push_back(std::move(solid));
+    }
+    model.uncertainty_mm = std::max(model.uncertainty_mm, part.uncertainty_mm);
 }
 
 }  // namespace lyr
