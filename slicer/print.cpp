@@ -83,13 +83,6 @@ void encode_hatch(const Hatch& hatch, format::LayerEncoder& layer) {
                  .intervals = intervals});
 }
 
-Point2 start_of(const Contour& contour) {
-    if (const auto* circle = std::get_if<FullCircle>(&contour)) {
-        return circle->centre + Vector2(circle->radius_mm, 0);
-    }
-    return std::get<Path>(contour).start;
-}
-
 format::LayerState layer_state(std::size_t index, const Section& section, const Options& options) {
     format::LayerState state;
     state.z_mm = static_cast<double>(index + 1) * options.layer_height_mm;

@@ -95,6 +95,13 @@ std::vector<Run> runs_of(const Path& path) {
 
 }  // namespace
 
+Point2 start_of(const Contour& contour) {
+    if (const auto* circle = std::get_if<FullCircle>(&contour)) {
+        return circle->centre + Vector2(circle->radius_mm, 0);
+    }
+    return std::get<Path>(contour).start;
+}
+
 double area_mm2(const Contour& contour) {
     if (const auto* circle = std::get_if<FullCircle>(&contour)) {
         const double area = std::numbers::pi * circle->radius_mm * circle->radius_mm;

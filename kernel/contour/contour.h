@@ -32,6 +32,9 @@ struct FullCircle {
 
 using Contour = std::variant<Path, FullCircle>;
 
+// Of a full circle, where it is farthest in x.
+Point2 start_of(const Contour& contour);
+
 double area_mm2(const Contour& contour);
 double length_mm(const Contour& contour);
 

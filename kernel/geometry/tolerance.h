@@ -3,7 +3,8 @@
 // The user's tolerance bounds the distance between the printed contour and the exact section. It is split:
 //   trace     an eighth        points of a traced curve off the exact one, arcs joined into one
 //   fit       half             fitted arcs off the curve's points
-//   quantise  three eighths    coordinates rounded to the file's quantum
+//   unite     a sixteenth      contours moved to each other where solids meet
+//   quantise  five sixteenths  coordinates rounded to the file's quantum
 // Exact lines and arcs have no fit error; their quantisation may use that share too.
 
 #pragma once
@@ -15,7 +16,8 @@ struct Tolerance {
 
     constexpr double trace_mm() const { return total_mm / 8; }
     constexpr double fit_mm() const { return total_mm / 2; }
-    constexpr double quantise_mm() const { return total_mm * 3 / 8; }
+    constexpr double unite_mm() const { return total_mm / 16; }
+    constexpr double quantise_mm() const { return total_mm * 5 / 16; }
 };
 
 // Heights and points closer than this are one: the resolution of the model's own coordinates. STEP files

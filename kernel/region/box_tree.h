@@ -1,0 +1,53 @@
+// Boxes in a tree, halved along their longer side: which of them meet a box.
+
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "kernel/region/curve.h"
+
+namespace lyr::region {
+
+class BoxTree {
+public:
+    explicit BoxTree(std::span<const Box2> boxes);
+
+    // Calls take(index) for every box that meets `box`, borders included. The order depends on the boxes alone.
+    template <class Take>
+    void meeting(const Box2& box, Take take) const {
+        if (!nodes_.empty()) visit(0, box, take);
+    }
+
+    Box2 bounds() const { return nodes_.empty() ? Box2() : nodes_.front().box; }
+
+private:
+    // A leaf holds items [first, last); an inner node's children are the next node and `second`.
+    struct Node {
+        Box2 box;
+        std::uint32_t first, last, second;
+    };
+
+    void build(std::uint32_t first, std::uint32_t last);
+
+    template <class Take>
+    void visit(std::uint32_t index, const Box2& box, Take& take) const {
+        const Node& node = nodes_[index];
+        if (!node.box.intersects(box)) return;
+        if (node.second == 0) {
+            for (std::uint32_t i = node.first; i < node.last; ++i) {
+                if (boxes_[i].intersects(box)) take(items_[i]);
+            }
+            return;
+        }
+        visit(index + 1, box, take);
+        visit(node.second, box, take);
+    }
+
+    std::vector<Node> nodes_;
+    std::vector<std::uint32_t> items_;
+    std::vector<Box2> boxes_;  // in the order of items_
+};
+
+}  // namespace lyr::region
