@@ -109,6 +109,14 @@ std::string summary_text(const Arguments& arguments, const slicer::Summary& summ
                        counted(summary.contours, "contour") + " (" +
                        counted(summary.circles, "full circle") + "), " +
                        counted(summary.lines, "line") + ", " + counted(summary.arcs, "arc") + '\n';
+    if (summary.united_layers > 0) {
+        text += "solids overlap or touch in " + counted(summary.united_layers, "layer") +
+                " and are printed as one";
+        if (summary.slivers > 0) {
+            text += "; " + counted(summary.slivers, "sliver") + " within the tolerance left out";
+        }
+        text += '\n';
+    }
     char line[160];
     if (arguments.sections()) {
         text += output_name(arguments.report_path);

@@ -17,20 +17,37 @@ std::vector<double> layer_middles(double part_height_mm, double layer_height_mm)
     }
 }
 
-SectionFigures figures_of(const Section& section) {
-    SectionFigures figures{.z_mm = section.z_mm, .open = section.open};
-    for (const SolidSection& solid : section.solids) {
-        for (const Contour& contour : solid.contours) {
-            figures.area_mm2 += area_mm2(contour);
-            figures.length_mm += length_mm(contour);
-            ++figures.loops;
-            if (std::holds_alternative<FullCircle>(contour)) ++figures.circles;
-            const SegmentCount segments = count(contour);
-            figures.lines += segments.lines;
-            figures.arcs += segments.arcs;
-        }
+SectionFigures figures_of(Region contours) {
+    SectionFigures figures{.loops = contours.size()};
+    for (const Contour& contour : contours) {
+        figures.area_mm2 += area_mm2(contour);
+        figures.length_mm += length_mm(contour);
+        if (std::holds_alternative<FullCircle>(contour)) ++figures.circles;
+        const SegmentCount segments = count(contour);
+        figures.lines += segments.lines;
+        figures.arcs += segments.arcs;
     }
     return figures;
+}
+
+SectionFigures figures_of(const Section& section) {
+    std::vector<Contour> contours;
+    for (const SolidSection& solid : section.solids) {
+        contours.insert(contours.end(), solid.contours.begin(), solid.contours.end());
+    }
+    SectionFigures figures = figures_of(contours);
+    figures.z_mm = section.z_mm;
+    figures.open = section.open;
+    return figures;
+}
+
+RegionResult region_of(const Section& section, const Tolerance& tolerance) {
+    if (section.solids.size() == 1) return {.contours = section.solids.front().contours};
+    std::vector<Region> regions;
+    for (const SolidSection& solid : section.solids) regions.push_back(solid.contours);
+    // Where solids share a wall that is no line or circle, each has arcs of its own for it: what is between them is
+    // narrower than the tolerance.
+    return united(regions, tolerance.unite_mm(), tolerance.total_mm);
 }
 
 unsigned thread_count(const Options& options) {

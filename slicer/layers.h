@@ -8,6 +8,7 @@
 #include <functional>
 #include <vector>
 
+#include "kernel/region/region.h"
 #include "slicer/slicer.h"
 
 namespace lyr::slicer {
@@ -15,7 +16,11 @@ namespace lyr::slicer {
 // The middle heights of a part's layers over the bed.
 std::vector<double> layer_middles(double part_height_mm, double layer_height_mm);
 
-SectionFigures figures_of(const Section& section);
+SectionFigures figures_of(Region contours);
+SectionFigures figures_of(const Section& section);  // solid by solid
+
+// The contours of all solids as one region: what is printed of a layer. A single solid's are returned as they are.
+RegionResult region_of(const Section& section, const Tolerance& tolerance);
 
 unsigned thread_count(const Options& options);
 

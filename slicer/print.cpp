@@ -83,12 +83,12 @@ void encode_hatch(const Hatch& hatch, format::LayerEncoder& layer) {
                  .intervals = intervals});
 }
 
-format::LayerState layer_state(std::size_t index, const Section& section, const Options& options) {
+format::LayerState layer_state(std::size_t index, Region region, const Options& options) {
     format::LayerState state;
     state.z_mm = static_cast<double>(index + 1) * options.layer_height_mm;
     state.height_mm = options.layer_height_mm;
-    if (!section.solids.empty()) {
-        const Point2 start = start_of(section.solids.front().contours.front());
+    if (!region.empty()) {
+        const Point2 start = start_of(region.front());
         state.start_x_mm = start.x();
         state.start_y_mm = start.y();
     }
@@ -100,20 +100,14 @@ format::LayerState layer_state(std::size_t index, const Section& section, const 
     return state;
 }
 
-Result<format::EncodedLayer> encode(std::size_t index, const Section& section,
-                                    const Options& options, format::Quantum quantum) {
-    format::LayerEncoder layer(quantum, layer_state(index, section, options));
+Result<format::EncodedLayer> encode(std::size_t index, Region region, const Options& options,
+                                    format::Quantum quantum) {
+    format::LayerEncoder layer(quantum, layer_state(index, region, options));
     layer.begin_path({.role = format::Role::outer_wall,
                       .width_mm = options.line_width_mm,
                       .height_mm = options.layer_height_mm,
                       .speed_mm_s = options.wall_speed_mm_s});
-    std::vector<Contour> region;
-    for (const SolidSection& solid : section.solids) {
-        for (const Contour& contour : solid.contours) {
-            encode_contour(contour, layer);
-            region.push_back(contour);
-        }
-    }
+    for (const Contour& contour : region) encode_contour(contour, layer);
     layer.begin_path({.role = format::Role::solid_infill,
                       .width_mm = options.line_width_mm,
                       .height_mm = options.layer_height_mm,
@@ -125,18 +119,32 @@ Result<format::EncodedLayer> encode(std::size_t index, const Section& section,
 
 // What one layer's work gives; `error` ends the print.
 struct MadeLayer {
-    SectionFigures figures;
-    Diagnostics diagnostics;
-    std::optional<format::EncodedLayer> encoded;
-    std::optional<Diagnostic> error;
+    SectionFigures section{}, printed{};
+    bool united = false;
+    std::size_t slivers = 0;
+    Diagnostics diagnostics{};
+    std::optional<format::EncodedLayer> encoded{};
+    std::optional<Diagnostic> error{};
 };
 
 MadeLayer make_layer(const Cutter& cutter, std::size_t index, double middle_mm,
                      const Options& options, format::Quantum quantum) {
     Section section = cutter.cut(middle_mm);
     for (Diagnostic& found : section.diagnostics) found.where.layer = static_cast<int>(index + 1);
-    MadeLayer made{figures_of(section), section.diagnostics, {}, {}};
-    auto encoded = encode(index, section, options, quantum);
+    const RegionResult region = region_of(section, options.tolerance);
+    MadeLayer made{.section = figures_of(section),
+                   .printed = figures_of(region.contours),
+                   .united = region.changed,
+                   .slivers = region.slivers,
+                   .diagnostics = section.diagnostics};
+    if (region.unresolved > 0) {
+        made.diagnostics.push_back({Severity::warning,
+                                    ExitStatus::geometry,
+                                    "solids that overlap could not be united: their walls are "
+                                    "printed over each other",
+                                    {.layer = static_cast<int>(index + 1), .z_mm = middle_mm}});
+    }
+    auto encoded = encode(index, region.contours, options, quantum);
     if (encoded) {
         made.encoded = std::move(*encoded);
     } else {
@@ -145,12 +153,14 @@ MadeLayer make_layer(const Cutter& cutter, std::size_t index, double middle_mm,
     return made;
 }
 
-void count(const SectionFigures& figures, Summary& summary) {
+void count(const MadeLayer& layer, Summary& summary) {
     ++summary.layers;
-    summary.contours += figures.loops;
-    summary.circles += figures.circles;
-    summary.lines += figures.lines;
-    summary.arcs += figures.arcs;
+    summary.contours += layer.printed.loops;
+    summary.circles += layer.printed.circles;
+    summary.lines += layer.printed.lines;
+    summary.arcs += layer.printed.arcs;
+    summary.united_layers += layer.united ? 1 : 0;
+    summary.slivers += layer.slivers;
 }
 
 Status check_size(const Eigen::AlignedBox3d& box, double layer_height_mm) {
@@ -213,10 +223,10 @@ Result<Summary> print(Model model, const std::string& source_name, const std::st
         [&](std::size_t i) { return make_layer(cutter, i, middles[i], options, quantum); },
         [&](std::size_t i, MadeLayer made) {
             diagnostics.insert(diagnostics.end(), made.diagnostics.begin(), made.diagnostics.end());
-            if (made.figures.open > 0 && !options.allow_open) {
+            if (made.section.open > 0 && !options.allow_open) {
                 failed = Diagnostic{Severity::error,
                                     ExitStatus::geometry,
-                                    counted(made.figures.open, "open contour end") +
+                                    counted(made.section.open, "open contour end") +
                                         "; --allow-open leaves such contours out",
                                     {.layer = static_cast<int>(i + 1), .z_mm = middles[i]}};
             } else if (made.error) {
@@ -225,8 +235,8 @@ Result<Summary> print(Model model, const std::string& source_name, const std::st
                 failed = appended.error();
             }
             if (failed) return false;
-            count(made.figures, summary);
-            if (report) report->write(to_json(made.figures));
+            count(made, summary);
+            if (report) report->write(to_json(made.section));
             progress("layers", i + 1, middles.size());
             return true;
         });

@@ -14,6 +14,8 @@
 //  5. A contour that does not close is an error, unless `allow_open`; then it is left out and reported.
 //  6. Surfaces that close, if need be after sewing, are solids. Those that do not are left out beside solids; alone they
 //     are an error (status geometry), unless `allow_open`.
+//  7. Solids that overlap or touch are printed as one: a layer's walls and fill are those of the union of their sections.
+//     Reports keep solids apart.
 
 #pragma once
 
@@ -40,15 +42,18 @@ struct Options {
     double nozzle_temp_c = 210;
     double bed_temp_c = 60;
     bool allow_open = false;
-    bool strict = false;  // refuse a model with geometric defects instead of healing it
+    bool strict = false;   // refuse a model with geometric defects instead of healing it
     unsigned threads = 0;  // 0: as many as there are processors
 };
 
 // Called from the calling thread only, with what is done of how much.
 using Progress = std::function<void(const char* stage, std::size_t done, std::size_t total)>;
 
+// Contours, lines and arcs are those printed, or those of the sections.
 struct Summary {
     std::size_t solids = 0, faces = 0, layers = 0, contours = 0, circles = 0, lines = 0, arcs = 0;
+    std::size_t united_layers = 0;  // where solids overlapped or touched
+    std::size_t slivers = 0;  // contours left out there: gaps and leftovers within the tolerance
     std::uint64_t bytes = 0;
     Eigen::AlignedBox3d box{};  // of the model, as it is printed
 };
