@@ -23,21 +23,16 @@ FreeformFace::FreeformFace(const Model& model, FaceId face,
       hull_(hull_of(*std::get<SharedBSplineSurface>(model[face].surface))) {}
 
 const HeightMesh& FreeformFace::mesh() const {
-    std::call_once(mesh_made_, [&] {
-        mesh_ = height_mesh(std::get<SharedBSplineSurface>(model_[face_].surface));
-    });
-    return mesh_;
+    return mesh_.get(
+        [&] { return height_mesh(std::get<SharedBSplineSurface>(model_[face_].surface)); });
 }
 
 const Containment& FreeformFace::containment() const {
-    std::call_once(containment_made_,
-                   [&] { containment_.emplace(model_, face_, vertex_level_mm_); });
-    return *containment_;
+    return containment_.get([&] { return Containment(model_, face_, vertex_level_mm_); });
 }
 
 HeightRange FreeformFace::heights() const {
-    std::call_once(heights_made_, [&] { heights_ = heights_of_face(); });
-    return heights_;
+    return heights_.get([&] { return heights_of_face(); });
 }
 
 // A highest point inside the face is a vertex of the mesh, to flat_cell_mm, with no higher neighbour.

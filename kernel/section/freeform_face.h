@@ -6,9 +6,7 @@
 
 #pragma once
 
-#include <mutex>
-#include <optional>
-
+#include "base/lazy.h"
 #include "kernel/brep/model.h"
 #include "kernel/section/containment.h"
 #include "kernel/section/height_mesh.h"
@@ -39,10 +37,9 @@ private:
     FaceId face_;
     const std::vector<double>& vertex_level_mm_;
     HeightRange loops_, hull_;
-    mutable std::once_flag mesh_made_, containment_made_, heights_made_;
-    mutable HeightMesh mesh_;
-    mutable std::optional<Containment> containment_;
-    mutable HeightRange heights_{};
+    Lazy<HeightMesh> mesh_;
+    Lazy<Containment> containment_;
+    Lazy<HeightRange> heights_;
 };
 
 }  // namespace lyr

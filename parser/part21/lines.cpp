@@ -19,17 +19,21 @@ std::uint32_t clamp(std::size_t number) {
 
 }  // namespace
 
+std::vector<Lines::Mark> Lines::marks_of(std::string_view text) {
+    std::vector<Mark> marks;
+    Mark mark{1, 0};
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (i % block == 0) marks.push_back(mark);
+        if (ends_line(text, i)) mark = {clamp(std::size_t{mark.line} + 1), i + 1};
+    }
+    marks.push_back(mark);
+    return marks;
+}
+
 LineColumn Lines::locate(std::string_view text, std::size_t offset) const {
-    std::call_once(once_, [&] {
-        Mark mark{1, 0};
-        for (std::size_t i = 0; i < text.size(); ++i) {
-            if (i % block == 0) marks_.push_back(mark);
-            if (ends_line(text, i)) mark = {clamp(std::size_t{mark.line} + 1), i + 1};
-        }
-        marks_.push_back(mark);
-    });
+    const std::vector<Mark>& marks = marks_.get([&] { return marks_of(text); });
     offset = std::min(offset, text.size());
-    Mark mark = marks_[std::min(offset / block, marks_.size() - 1)];
+    Mark mark = marks[std::min(offset / block, marks.size() - 1)];
     for (std::size_t i = offset / block * block; i < offset; ++i) {
         if (ends_line(text, i)) mark = {clamp(std::size_t{mark.line} + 1), i + 1};
     }

@@ -4,9 +4,10 @@
 #pragma once
 
 #include <cstdint>
-#include <mutex>
 #include <string_view>
 #include <vector>
+
+#include "base/lazy.h"
 
 namespace lyr::part21 {
 
@@ -26,8 +27,9 @@ private:
     };
     static constexpr std::size_t block = 1 << 12;
 
-    mutable std::once_flag once_;
-    mutable std::vector<Mark> marks_;
+    static std::vector<Mark> marks_of(std::string_view text);
+
+    Lazy<std::vector<Mark>> marks_;
 };
 
 }  // namespace lyr::part21
