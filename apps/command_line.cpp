@@ -14,6 +14,7 @@
 #include <new>
 #include <numeric>
 #include <optional>
+#include <system_error>
 #include <vector>
 
 #include "base/replace_file.h"
@@ -141,6 +142,12 @@ int run_main(const Program& program, int argc, char** argv,
         return done ? static_cast<int>(ExitStatus::ok) : fail(program, done.error());
     } catch (const std::bad_alloc&) {
         return fail(program, {Severity::error, ExitStatus::internal, "out of memory", {}});
+    } catch (const std::system_error& error) {
+        return fail(program,
+                    {Severity::error,
+                     ExitStatus::internal,
+                     "the system gives no more threads or memory: " + std::string(error.what()),
+                     {}});
     } catch (const std::exception& error) {
         return fail(program, {Severity::error, ExitStatus::internal, error.what(), {}});
     }

@@ -102,7 +102,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
 }
 
 std::string summary_text(const Arguments& arguments, const slicer::Summary& summary,
-                         std::size_t warnings, double time_s) {
+                         std::size_t findings, double time_s) {
     std::string text = input_name(arguments.step_path) + ": " + counted(summary.solids, "solid") +
                        ", " + counted(summary.faces, "face") + '\n' +
                        counted(summary.layers, arguments.sections() ? "section" : "layer") + ": " +
@@ -129,7 +129,7 @@ std::string summary_text(const Arguments& arguments, const slicer::Summary& summ
         text += line + output_name(arguments.lyr_path) + ": " + counted(summary.bytes, "byte");
     }
     std::snprintf(line, sizeof line, ", %.2f s, ", time_s);
-    return text + line + counted(warnings, "warning") + '\n';
+    return text + line + counted(findings, "finding") + '\n';
 }
 
 Result<slicer::Summary> slice(const Arguments& arguments, ProgressLine& line,

@@ -2,6 +2,7 @@
 
 #include "base/diagnostic.h"
 
+#include <cmath>
 #include <cstdio>
 
 #include "base/text.h"
@@ -23,8 +24,11 @@ const char* name_of(Severity severity) {
 
 void append_coordinate(std::string& line, const char* name, const std::optional<double>& value_mm) {
     if (!value_mm) return;
+    // Beyond a kilometre nobody wants to count the digits.
+    constexpr double longest_mm = 1e6;
     char text[48];
-    std::snprintf(text, sizeof text, " %s=%.3f", name, *value_mm);
+    std::snprintf(text, sizeof text, std::abs(*value_mm) <= longest_mm ? " %s=%.3f" : " %s=%.4g",
+                  name, *value_mm);
     line += text;
 }
 

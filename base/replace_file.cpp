@@ -79,7 +79,7 @@ Result<ReplaceFile> ReplaceFile::beside(const std::string& target, const std::st
     if (descriptor < 0) return cannot_write(name, errno);
     temporaries.insert(temporary);
     struct stat replaced {};
-    if (::stat(target.c_str(), &replaced) == 0) ::fchmod(descriptor, replaced.st_mode & 07777);
+    if (::stat(target.c_str(), &replaced) == 0) ::fchmod(descriptor, replaced.st_mode & 0777);
     ReplaceFile made(name, ::fdopen(descriptor, "wb"));
     made.target_ = target;
     made.temporary_ = temporary;

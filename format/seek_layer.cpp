@@ -26,10 +26,8 @@ bool Reader::Implementation::find_index(std::uint64_t file_bytes, BlockHead& hea
 }
 
 bool Reader::Implementation::fail_cut_short(std::uint64_t offset) {
-    return fail(
-        "the file is cut short: it has no end block to find layers by; lyrview --info tells "
-        "how far it is whole",
-        offset);
+    return fail("the file is cut short (lyrview --info tells how far it is whole): no end block",
+                offset);
 }
 
 std::optional<std::uint64_t> Reader::Implementation::find_layer(std::uint32_t index,

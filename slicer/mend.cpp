@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "base/text.h"
 #include "kernel/brep/assembly.h"
 #include "kernel/brep/defect.h"
 #include "kernel/brep/edge_deviation.h"
@@ -88,7 +89,8 @@ Status refuse_defects(const Diagnostics& found) {
     if (count == 0) return Done{};
     Diagnostic error = *std::find_if(found.begin(), found.end(), is_defect);
     error.severity = Severity::error;
-    error.message += " (" + std::to_string(count) + " findings; --strict heals none)";
+    error.message +=
+        " (" + counted(static_cast<std::uint64_t>(count), "finding") + "; --strict heals none)";
     return error;
 }
 

@@ -226,8 +226,9 @@ Result<Summary> print(Model model, const std::string& source_name, const std::st
             if (made.section.open > 0 && !options.allow_open) {
                 failed = Diagnostic{Severity::error,
                                     ExitStatus::geometry,
-                                    counted(made.section.open, "open contour end") +
-                                        "; --allow-open leaves such contours out",
+                                    counted(made.section.open, "contour") +
+                                        " cannot be closed (see above); --allow-open leaves such "
+                                        "contours out",
                                     {.layer = static_cast<int>(i + 1), .z_mm = middles[i]}};
             } else if (made.error) {
                 failed = made.error;

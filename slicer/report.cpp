@@ -79,7 +79,7 @@ Result<Summary> section_at(const Model& model, const std::vector<double>& height
     if (open > 0 && !options.allow_open) {
         return Diagnostic{Severity::error,
                           ExitStatus::geometry,
-                          counted(open, "open contour end") + " (see the warnings)",
+                          counted(open, "contour") + " cannot be closed (see above)",
                           {}};
     }
     if (Status written = report->commit(); !written) return written.error();

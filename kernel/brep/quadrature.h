@@ -21,8 +21,8 @@ struct Fineness {
 // Fewer panels miss the bends of a high degree, more cost time and add nothing that freeform_accuracy shows.
 inline constexpr Fineness for_figures{8, 32, std::numbers::pi / 8};
 
-// For a sign alone.
-inline constexpr Fineness for_signs{2, 8, std::numbers::pi / 2};
+// For a sign alone: simple edges in fewer panels, those of many spans in as many.
+inline constexpr Fineness for_signs{2, 32, std::numbers::pi / 2};
 
 // The borders of panels from `from` to `to` (rising): distinct knots between them, thinned out to the most or with
 // their spans divided until there are the fewest.

@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "kernel/brep/freeform_integrals.h"
 #include "kernel/brep/loop_orientation.h"
@@ -36,10 +37,9 @@ enum class Aim { figure, sign };
 
 // How many panels of five points an edge needs.
 int panels(const Edge& edge, Aim aim) {
-    constexpr int most_for_sign = 8;
     if (const auto* spline = std::get_if<BSplineCurve>(&edge.curve)) {
-        const int all = 2 * static_cast<int>(spline->control_points.size());
-        return aim == Aim::sign ? std::min(all, most_for_sign) : all;
+        const auto points = static_cast<int>(spline->control_points.size());
+        return aim == Aim::sign ? (points + 1) / 2 : 2 * points;
     }
     const double widest_panel_rad = aim == Aim::sign ? pi / 2 : pi / 6;
     return 1 + static_cast<int>(std::abs(edge.t_end - edge.t_start) / widest_panel_rad);
@@ -449,11 +449,14 @@ double signed_area_mm2(const Model& model, FaceId id) {
 }
 
 ShellOrientation orient_closed_shell(Model& model, ShellId id, bool is_void) {
+    std::vector<bool> stated;
+    for (std::size_t f = 0; f < model[id].face_count; ++f)
+        stated.push_back(model.faces[model[id].first_face + f].same_sense);
     ShellOrientation result = turn_faces(model, id, Aim::sign);
     if (std::abs(result.volume_mm3) < certain_share * std::pow(result.area_mm2, 1.5)) {
-        const std::size_t turned = result.faces_turned;
+        for (std::size_t i = 0; i < stated.size(); ++i)
+            model.faces[model[id].first_face + i].same_sense = stated[i];
         result = turn_faces(model, id, Aim::figure);
-        result.faces_turned += turned;
     }
     result.is_reversed = is_void ? result.volume_mm3 > 0 : result.volume_mm3 < 0;
     if (result.is_reversed) reverse_shell(model, id);

@@ -86,7 +86,7 @@ TEST_CASE("lyrview: a layer of a file that is cut short is refused with what to 
     const std::string whole = text_of(folder / "a.lyr");
     folder.write("cut.lyr", whole.substr(0, whole.size() - 40));
     check_failure(folder.run("lyrview cut.lyr --layer 1 -o x.svg"), 3,
-                  "cut short: it has no end block to find layers by; lyrview --info tells");
+                  "cut short (lyrview --info tells how far it is whole)");
     check_failure(folder.run("lyrview cut.lyr --info"), 3, "the last whole layer is 3");
     CHECK_FALSE(fs::exists(folder / "x.svg"));
 }

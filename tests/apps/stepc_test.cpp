@@ -20,7 +20,7 @@ Folder with_part(const std::string& name) {
 // Whether the text says "1 lines" or the like of anything that a summary counts.
 bool has_one_of_many(const std::string& text) {
     for (const char* noun : {"solids", "faces", "layers", "sections", "contours", "full circles",
-                             "lines", "arcs", "bytes", "warnings"}) {
+                             "lines", "arcs", "bytes", "findings"}) {
         const std::size_t at = text.find(std::string("1 ") + noun);
         if (at != text.npos && (at == 0 || !std::isdigit(static_cast<unsigned char>(text[at - 1]))))
             return true;

@@ -127,6 +127,60 @@ TEST_CASE("freeform integrals 2: areas are negative where sense and loops contra
     }
 }
 
+TEST_CASE("orientation: a thin corrugated tube is what it is stated to be") {
+    constexpr int lobes = 24, points_per_lobe = 8, count = lobes * points_per_lobe + 1;
+    const auto ring = [](double radius_mm, double z_mm) {
+        BSplineCurve c{3, {}, {}, {}, true};
+        for (int i = 0; i < count; ++i) {
+            const double angle = 2 * pi * (i % (count - 1)) / (count - 1);
+            const double r = radius_mm + 3 * std::sin(lobes * angle);
+            c.control_points.push_back({r * std::cos(angle), r * std::sin(angle), z_mm});
+        }
+        c.knots.assign(4, 0.0);
+        for (int i = 1; i < count - 3; ++i) c.knots.push_back(i);
+        c.knots.resize(count + 4, count - 3);
+        return c;
+    };
+    test::Random random(9);
+    for (const double height_mm : {0.5, 5.0, 40.0}) {
+        CAPTURE(height_mm);
+        Builder b;
+        EdgeId edges[2][2], seams[2];
+        for (const int outer : {0, 1}) {
+            const double radius_mm = 20 + outer;
+            const auto low = ring(radius_mm, 0), high = ring(radius_mm, height_mm);
+            const Point3 &from = low.control_points[0], &to = high.control_points[0];
+            const VertexId bottom = b.vertex(from.x(), from.y(), from.z()),
+                           top = b.vertex(to.x(), to.y(), to.z());
+            edges[outer][0] = b.edge(low, bottom, bottom);
+            edges[outer][1] = b.edge(high, top, top);
+            seams[outer] = b.line(bottom, top);
+        }
+        for (const int outer : {0, 1}) {
+            const bool inner = outer == 0;
+            const auto wall = std::make_shared<const BSplineSurface>(
+                extruded(ring(20 + outer, 0), {0, 0, height_mm}));
+            std::vector<Use> loop{
+                {edges[outer][0]}, {seams[outer]}, {edges[outer][1], true}, {seams[outer], true}};
+            if (inner) {
+                std::reverse(loop.begin(), loop.end());
+                for (Use& use : loop) use.reversed = !use.reversed;
+            }
+            b.face(wall, !inner, {loop});
+            b.face(Plane{Builder::looking({0, 0, outer * height_mm},
+                                          (outer ? 1.0 : -1.0) * Vector3::UnitZ())},
+                   true, {{{edges[1][outer], outer == 0}}, {{edges[0][outer], outer == 1}}});
+        }
+        const Model model = b.finish();
+        const double volume_mm3 = signed_volume_mm3(model, ShellId{0});
+        REQUIRE(volume_mm3 > 0);
+        for (int i = 0; i < 4; ++i)
+            check_orientation(transformed(model, random.similarity(false)), volume_mm3, random);
+        Model as_stated = model;
+        CHECK(orient_closed_shell(as_stated, ShellId{0}, false).faces_turned == 0);
+    }
+}
+
 TEST_CASE("freeform integrals 3: balls, whole and in parts") {
     const double r = 3, whole = 4.0 / 3 * pi * r * r * r;
     for (const bool swapped : {false, true}) {

@@ -1,8 +1,9 @@
+#include "kernel/brep/monotone.h"
+
 #include <doctest/doctest.h>
 
 #include <random>
 
-#include "kernel/brep/monotone.h"
 #include "kernel/brep/placement.h"
 #include "kernel/solids.h"
 

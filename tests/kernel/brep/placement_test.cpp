@@ -1,6 +1,7 @@
+#include "kernel/brep/placement.h"
+
 #include <doctest/doctest.h>
 
-#include "kernel/brep/placement.h"
 #include "kernel/brep/validity.h"
 #include "kernel/solids.h"
 

@@ -1,10 +1,11 @@
+#include "kernel/brep/validity.h"
+
 #include <doctest/doctest.h>
 
 #include <set>
 #include <string>
 
 #include "kernel/brep/gaps.h"
-#include "kernel/brep/validity.h"
 #include "kernel/solids.h"
 
 using namespace lyr;
