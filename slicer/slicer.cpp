@@ -35,7 +35,7 @@ Result<Model> load(const std::string& step_path, const Options& options, Diagnos
     diagnostics.insert(diagnostics.end(), file->diagnostics().begin(), file->diagnostics().end());
     Diagnostics found;
     auto model = importer::import_model(*file, found);
-    Status mended = model ? check_extent(*model) : Status(Done{});
+    Status mended = model ? check_places(*model) : Status(Done{});
     if (model && mended) mended = mend(*model, options, found);
     for (Diagnostic& diagnostic : found) diagnostics.push_back(in_file(diagnostic, *file));
     if (!model) return model.error();

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "kernel/brep/defect.h"
+#include "kernel/geometry/tolerance.h"
 
 namespace lyr {
 namespace {
@@ -34,17 +35,38 @@ Status check(std::span<const Point3> points, SourceId source) {
 
 }  // namespace
 
-Status check_extent(const Model& model) {
+Status check_extent(const Vertex& vertex) {
+    return check({&vertex.point, 1}, vertex.source);
+}
+
+Status check_extent(const Edge& edge) {
+    if (Status checked = check(control_points(edge.curve), edge.source); !checked) return checked;
+    const Point3 ends[] = {evaluate(edge.curve, edge.t_start), evaluate(edge.curve, edge.t_end)};
+    return check(ends, edge.source);
+}
+
+Status check_extent(const Face& face) {
+    return check(control_points(face.surface), face.source);
+}
+
+Status check_places(const Model& model) {
+    Eigen::AlignedBox3d box;
     for (const Vertex& vertex : model.vertices) {
-        if (Status checked = check({&vertex.point, 1}, vertex.source); !checked) return checked;
+        if (Status checked = check_extent(vertex); !checked) return checked;
+        box.extend(vertex.point);
     }
+    const double extent_mm = box.isEmpty() ? 0 : box.diagonal().norm();
     for (const Edge& edge : model.edges) {
-        if (Status checked = check(control_points(edge.curve), edge.source); !checked)
-            return checked;
-    }
-    for (const Face& face : model.faces) {
-        if (Status checked = check(control_points(face.surface), face.source); !checked)
-            return checked;
+        const Point3 first = evaluate(edge.curve, edge.t_start),
+                     last = evaluate(edge.curve, edge.t_end);
+        const double off_mm = std::max((first - model[edge.start].point).norm(),
+                                       (last - model[edge.end].point).norm());
+        if (off_mm <= std::max({extent_mm, (last - first).norm(), resolution_mm})) continue;
+        return defect(Severity::error,
+                      "the edge lies " + in_mm(off_mm) +
+                          " off its vertices, more than they are apart: is a coordinate or a "
+                          "radius damaged?",
+                      edge.source, model[edge.start].point);
     }
     return Done{};
 }

@@ -1,7 +1,7 @@
 // Line integrals along the loops of faces. With o the surface's own origin seen from c, the integral of (p - c) . n
-// over a face is o . S + r A on spheres and cylinders, o . S on planes and on cones (o the apex), and
-// o . S + m A + M K on tori, where S is the integral of n, which depends on the boundary alone, A the face's area
-// and K the integral of cos v, v the angle around the tube.
+// over a face is o . S + r A on spheres and cylinders, o . S on planes, o . S + r cos(a) A on cones (o on the axis, r
+// the radius at its height, a the half angle), and o . S + m A + M K on tori, where S is the integral of n, which
+// depends on the boundary alone, A the face's area and K the integral of cos v, v the angle around the tube.
 //
 // On surfaces that close upon themselves a boundary does not say which of two regions it bounds: A and K are known
 // up to the whole surface's, and A lies between zero and the whole.
@@ -149,16 +149,43 @@ double cylinder_area(const Cylinder& cylinder, const FaceNodes& face, double sen
     return -sense * handedness(cylinder.frame) * cylinder.radius_mm * sum;
 }
 
-// From the apex to the loops: radius^2 / (2 sin) for each radian around the axis.
-double cone_area(const Cone& cone, const FaceNodes& face, double sense) {
-    double sum = 0;
+double radius_at(const Cone& cone, double z) {
+    return cone.radius_mm + z * std::tan(cone.half_angle_rad);
+}
+
+// A point of the axis at the height of the loops: an apex that is far away costs digits.
+// Of the loops' vertices the widest.
+Point3 level_with(const Cone& cone, const FaceNodes& face) {
+    double widest = 0, level = 0;
+    for (const LoopNodes& loop : face) {
+        if (loop.empty()) continue;
+        const double z = cone.frame.to_local(loop.front().point).z();
+        if (std::abs(radius_at(cone, z)) <= widest) continue;
+        widest = std::abs(radius_at(cone, z));
+        level = z;
+    }
+    return cone.frame.origin + level * cone.frame.z;
+}
+
+// From the circle at a level to the loops, (r^2 - r0^2) / (2 sin) for each radian around the axis, in a form that does not
+// cancel; and from the apex to the circle if the loops go around it.
+double cone_area(const Cone& cone, const Point3& level, const FaceNodes& face, double sense) {
+    const double z0 = cone.frame.to_local(level).z(), r0 = radius_at(cone, z0);
+    constexpr double apex_closeness = 1e-6;  // a share of the radius at the level
+    double sum = 0, turns = 0;
+    bool through_apex = false;
     for (const LoopNodes& loop : face) {
         for (const Node& node : loop) {
             const AroundAxis at(cone.frame, node);
-            sum += at.x * at.step_y - at.y * at.step_x;
+            sum += (at.z - z0) * (radius_at(cone, at.z) + r0) * at.angle_step();
+            turns += at.angle_step() / (2 * pi);
+            through_apex = through_apex || at.radius() <= apex_closeness * std::abs(r0);
         }
     }
-    return -sense * handedness(cone.frame) * sum / (2 * std::sin(cone.half_angle_rad));
+    // What a loop turns on the spot in the apex is not among its steps, and leaves no whole number.
+    if (!through_apex) turns = std::round(turns);
+    const double to_apex = pi * r0 * r0 / std::sin(cone.half_angle_rad) * turns;
+    return -sense * handedness(cone.frame) * (sum / (2 * std::cos(cone.half_angle_rad)) + to_apex);
 }
 
 // How many times `whole` has to be added to bring `value` into (0, whole]. A boundary that cancels bounds the whole.
@@ -327,9 +354,11 @@ FaceIntegrals integrals_of(const Model& model, const Face& face, const Point3& c
             return {area, (s.frame.origin - c).dot(outward) + sense * s.radius_mm * std::abs(area)};
         }
         FaceIntegrals operator()(const Cone& s) const {
-            const Point3 apex =
-                s.frame.origin - s.radius_mm / std::tan(s.half_angle_rad) * s.frame.z;
-            return {cone_area(s, nodes, sense), (apex - c).dot(outward)};
+            const Point3 level = level_with(s, nodes);
+            const double area = cone_area(s, level, nodes, sense);
+            const double offset =
+                radius_at(s, s.frame.to_local(level).z()) * std::cos(s.half_angle_rad);
+            return {area, (level - c).dot(outward) + sense * offset * std::abs(area)};
         }
         FaceIntegrals operator()(const Sphere& s) const {
             const double area = sphere_area(s, nodes, sense);

@@ -7,6 +7,7 @@
 
 #include "base/text.h"
 #include "kernel/brep/edge_builder.h"
+#include "kernel/brep/extent.h"
 #include "kernel/brep/volume.h"
 #include "kernel/geometry/tolerance.h"
 #include "parser/import/curves.h"
@@ -267,6 +268,7 @@ Status Builder::add_face(const ShellRecord& record, const FaceRecord& face, Shel
     const bool same_sense = (face.same_sense == stated->same_sense) != is_inner;
     model_.faces.push_back(
         {std::move(surface), same_sense, first_loop, face.loop_count, shell, file_.id(face.face)});
+    if (Status checked = check_extent(model_.faces.back()); !checked) return checked.error();
     return Done{};
 }
 
@@ -367,6 +369,7 @@ Result<VertexId> Builder::vertex_of(InstanceIndex user, InstanceIndex instance) 
     if (!point) return point.error();
     const VertexId id(model_.vertices.size());
     model_.vertices.push_back({*point, file_.id(instance)});
+    if (Status checked = check_extent(model_.vertices.back()); !checked) return checked.error();
     vertices_.emplace(instance.value, id);
     return id;
 }
@@ -395,6 +398,7 @@ Result<EdgeId> Builder::edge_of(InstanceIndex instance) {
     model_.edges.push_back(make_edge(curve->curve, *start, *end, same_sense == curve->same_sense,
                                      file_.id(instance), model_, units_.uncertainty_mm,
                                      diagnostics_));
+    if (Status checked = check_extent(model_.edges.back()); !checked) return checked.error();
     edges_.emplace(instance.value, id);
     return id;
 }

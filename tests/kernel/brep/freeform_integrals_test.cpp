@@ -128,12 +128,14 @@ TEST_CASE("freeform integrals 2: areas are negative where sense and loops contra
 }
 
 TEST_CASE("orientation: a thin corrugated tube is what it is stated to be") {
-    constexpr int lobes = 24, points_per_lobe = 8, count = lobes * points_per_lobe + 1;
+    constexpr int lobes = 24, points_per_lobe = 24, count = lobes * points_per_lobe + 1;
+    // The inner ring starts half a lobe further on.
     const auto ring = [](double radius_mm, double z_mm) {
         BSplineCurve c{3, {}, {}, {}, true};
         for (int i = 0; i < count; ++i) {
-            const double angle = 2 * pi * (i % (count - 1)) / (count - 1);
-            const double r = radius_mm + 3 * std::sin(lobes * angle);
+            const double first = radius_mm < 29.5 ? pi / lobes : 0;
+            const double angle = first + 2 * pi * (i % (count - 1)) / (count - 1);
+            const double r = radius_mm + 3 * std::cos(lobes * angle);
             c.control_points.push_back({r * std::cos(angle), r * std::sin(angle), z_mm});
         }
         c.knots.assign(4, 0.0);
@@ -147,7 +149,7 @@ TEST_CASE("orientation: a thin corrugated tube is what it is stated to be") {
         Builder b;
         EdgeId edges[2][2], seams[2];
         for (const int outer : {0, 1}) {
-            const double radius_mm = 20 + outer;
+            const double radius_mm = 29 + outer;
             const auto low = ring(radius_mm, 0), high = ring(radius_mm, height_mm);
             const Point3 &from = low.control_points[0], &to = high.control_points[0];
             const VertexId bottom = b.vertex(from.x(), from.y(), from.z()),
@@ -159,7 +161,7 @@ TEST_CASE("orientation: a thin corrugated tube is what it is stated to be") {
         for (const int outer : {0, 1}) {
             const bool inner = outer == 0;
             const auto wall = std::make_shared<const BSplineSurface>(
-                extruded(ring(20 + outer, 0), {0, 0, height_mm}));
+                extruded(ring(29 + outer, 0), {0, 0, height_mm}));
             std::vector<Use> loop{
                 {edges[outer][0]}, {seams[outer]}, {edges[outer][1], true}, {seams[outer], true}};
             if (inner) {

@@ -123,6 +123,33 @@ TEST_CASE("1, 2, 5: cylinders and cones") {
     check_volume(with_seam, pi * 4 * 4 / 3);
 }
 
+TEST_CASE("1: a cone that is all but a cylinder, its apex far away (trj6_k1)") {
+    for (const double half_angle : {2.6e-7, 1e-5, 1e-3}) {
+        CAPTURE(half_angle);
+        const double top = 2 + 7 * std::tan(half_angle);
+        check_volume(turned(Cone{at_height(1), 2, half_angle}, 1, 2, 8, top),
+                     pi * 7 / 3 * (4 + 2 * top + top * top));
+    }
+}
+
+TEST_CASE("1: half a cone, its loop through the apex") {
+    const double r = 3, h = 5;
+    Shape half;
+    const auto rim = half.edge(Circle{at_height(0), r}, 0, pi);
+    const Vector3 up = Vector3(-r, 0, h).normalized(), up_left = Vector3(r, 0, h).normalized();
+    const double slant = std::hypot(r, h);
+    const auto right = half.edge(Line{{r, 0, 0}, up}, 0, slant),
+               left = half.edge(Line{{-r, 0, 0}, up_left}, 0, slant),
+               base = half.edge(Line{{-r, 0, 0}, x_axis}, 0, 2 * r);
+    const Frame down{{0, 0, 0}, x_axis, -y_axis, -z_axis};
+    half.face(Cone{down, r, std::atan(r / h)}, true,
+              {{{rim, false}, {left, false}, {right, true}}});
+    half.face(Plane{down}, true, {{{rim, true}, {base, true}}});
+    half.face(Plane{{{0, 0, 0}, x_axis, z_axis, -y_axis}}, true,
+              {{{base, false}, {right, false}, {left, true}}});
+    check_volume(half, pi * r * r * h / 6);
+}
+
 TEST_CASE("1, 2, 5: spheres, whole and in parts") {
     const double r = 3, whole = 4.0 / 3 * pi * r * r * r;
     const Sphere sphere{{{1, 2, 3}, x_axis, y_axis, z_axis}, r};
