@@ -23,7 +23,7 @@ const char* name_of(Severity severity) {
 }
 
 void append_coordinate(std::string& line, const char* name, const std::optional<double>& value_mm) {
-    if (!value_mm) return;
+    if (!value_mm || !std::isfinite(*value_mm)) return;
     // Beyond a kilometre nobody wants to count the digits.
     constexpr double longest_mm = 1e6;
     char text[48];
@@ -47,15 +47,12 @@ std::string to_string(const Diagnostic& diagnostic) {
     line += ": ";
     if (where.entity) line += '#' + std::to_string(where.entity) + ": ";
     line += escaped(diagnostic.message);
-    if (where.layer || where.x_mm || where.y_mm || where.z_mm) {
-        line += " (at";
-        if (where.layer) line += " layer " + std::to_string(*where.layer);
-        append_coordinate(line, "x", where.x_mm);
-        append_coordinate(line, "y", where.y_mm);
-        append_coordinate(line, "z", where.z_mm);
-        line += ')';
-    }
-    return line;
+    std::string place;
+    if (where.layer) place += " layer " + std::to_string(*where.layer);
+    append_coordinate(place, "x", where.x_mm);
+    append_coordinate(place, "y", where.y_mm);
+    append_coordinate(place, "z", where.z_mm);
+    return place.empty() ? line : line + " (at" + place + ')';
 }
 
 }  // namespace lyr

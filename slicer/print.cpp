@@ -127,8 +127,45 @@ struct MadeLayer {
     std::optional<Diagnostic> error{};
 };
 
+// How far the region reaches out of the box, seen from the ends and middles of its segments.
+double excess_mm(const Region& region, const Eigen::AlignedBox3d& box) {
+    const Eigen::AlignedBox2d base(Point2(box.min().head<2>()), Point2(box.max().head<2>()));
+    double excess = 0;
+    const auto look = [&](const Point2& at) {
+        excess = std::max(excess, base.exteriorDistance(at));
+    };
+    for (const Contour& contour : region) {
+        if (const auto* circle = std::get_if<FullCircle>(&contour)) {
+            for (const Vector2& to : {Vector2(1, 0), Vector2(0, 1), Vector2(-1, 0), Vector2(0, -1)})
+                look(circle->centre + circle->radius_mm * to);
+            continue;
+        }
+        Point2 from = std::get<Path>(contour).start;
+        for (const Segment& segment : std::get<Path>(contour).segments) {
+            look(point_at(from, segment, 0.5));
+            look(segment.end);
+            from = segment.end;
+        }
+    }
+    return excess;
+}
+
+// A section that leaves the part's own box follows faces or edges that are not where the rest is; filling it may be endless.
+Status check_inside(const Region& region, const Eigen::AlignedBox3d& box, const Location& where) {
+    constexpr double most_share = 0.01;
+    const double excess = excess_mm(region, box);
+    if (excess <= most_share * box.diagonal().norm()) return Done{};
+    char text[128];
+    std::snprintf(text, sizeof text,
+                  "the section reaches %.3g mm out of the part's box: an edge or a face is damaged",
+                  excess);
+    return Diagnostic{Severity::error, ExitStatus::geometry, text, where};
+}
+
 MadeLayer make_layer(const Cutter& cutter, std::size_t index, double middle_mm,
-                     const Options& options, format::Quantum quantum) {
+                     const Eigen::AlignedBox3d& box, const Options& options,
+                     format::Quantum quantum) {
+    const Location where{.layer = static_cast<int>(index + 1), .z_mm = middle_mm};
     Section section = cutter.cut(middle_mm);
     for (Diagnostic& found : section.diagnostics) found.where.layer = static_cast<int>(index + 1);
     const RegionResult region = region_of(section, options.tolerance);
@@ -138,11 +175,14 @@ MadeLayer make_layer(const Cutter& cutter, std::size_t index, double middle_mm,
                    .slivers = region.slivers,
                    .diagnostics = section.diagnostics};
     if (region.unresolved > 0) {
-        made.diagnostics.push_back({Severity::warning,
-                                    ExitStatus::geometry,
+        made.diagnostics.push_back({Severity::warning, ExitStatus::geometry,
                                     "solids that overlap could not be united: their walls are "
                                     "printed over each other",
-                                    {.layer = static_cast<int>(index + 1), .z_mm = middle_mm}});
+                                    where});
+    }
+    if (Status inside = check_inside(region.contours, box, where); !inside) {
+        made.error = inside.error();
+        return made;
     }
     auto encoded = encode(index, region.contours, options, quantum);
     if (encoded) {
@@ -220,7 +260,9 @@ Result<Summary> print(Model model, const std::string& source_name, const std::st
     std::optional<Diagnostic> failed;
     in_order(
         middles.size(), thread_count(options),
-        [&](std::size_t i) { return make_layer(cutter, i, middles[i], options, quantum); },
+        [&](std::size_t i) {
+            return make_layer(cutter, i, middles[i], summary.box, options, quantum);
+        },
         [&](std::size_t i, MadeLayer made) {
             diagnostics.insert(diagnostics.end(), made.diagnostics.begin(), made.diagnostics.end());
             if (made.section.open > 0 && !options.allow_open) {

@@ -16,8 +16,8 @@ namespace lyr {
 
 Partials partials(const BezierPatch& patch, const Point2& uv);
 
-// How far parameter lines over the whole width of the patch are from the cubics with their ends and end tangents, at most;
-// over a share of the width by the fourth power of the share less.
+// How far parameter lines over the whole width of the patch are from the cubics (of a rational patch, the quotients of
+// cubics) with the same ends and derivatives there, at most; over a share of the width by the fourth power of the share less.
 struct QuarticPart {
     double along_u_mm = 0, along_v_mm = 0;
 };

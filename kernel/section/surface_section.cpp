@@ -297,6 +297,11 @@ bool trace(const SurfaceSection& section, int component, double from, double to,
            const Point2& start, const Point2& end, const Tolerance& tolerance,
            std::vector<Segment>& out) {
     if (const auto* circles = std::get_if<CircleSection>(&section)) {
+        if (const double off_mm = distance_astray(section, component, from, to, start, end);
+            off_mm > 0) {
+            out.push_back({end});
+            return off_mm <= tolerance.trace_mm();
+        }
         const bool left = circles->counter_clockwise[static_cast<std::size_t>(component)];
         trace_circle(section, component, from, to, left ? 1 : -1, start, end, out);
         return true;

@@ -242,6 +242,15 @@ void Builder::add_note(InstanceIndex instance, const std::string& message) {
     diagnostics_.push_back(std::move(note));
 }
 
+// The kernel knows instances only.
+Diagnostic Builder::in_file(Diagnostic found, InstanceIndex instance) const {
+    const Location place = file_.location(instance);
+    found.where.file = place.file;
+    found.where.line = place.line;
+    found.where.column = place.column;
+    return found;
+}
+
 Status Builder::add_face(const ShellRecord& record, const FaceRecord& face, ShellId shell) {
     const std::uint32_t first_loop = index(model_.loops);
     for (std::uint32_t i = 0; i < face.loop_count; ++i) {
@@ -268,7 +277,8 @@ Status Builder::add_face(const ShellRecord& record, const FaceRecord& face, Shel
     const bool same_sense = (face.same_sense == stated->same_sense) != is_inner;
     model_.faces.push_back(
         {std::move(surface), same_sense, first_loop, face.loop_count, shell, file_.id(face.face)});
-    if (Status checked = check_extent(model_.faces.back()); !checked) return checked.error();
+    if (Status checked = check_extent(model_.faces.back()); !checked)
+        return in_file(checked.error(), face.face);
     return Done{};
 }
 
@@ -369,7 +379,8 @@ Result<VertexId> Builder::vertex_of(InstanceIndex user, InstanceIndex instance) 
     if (!point) return point.error();
     const VertexId id(model_.vertices.size());
     model_.vertices.push_back({*point, file_.id(instance)});
-    if (Status checked = check_extent(model_.vertices.back()); !checked) return checked.error();
+    if (Status checked = check_extent(model_.vertices.back()); !checked)
+        return in_file(checked.error(), instance);
     vertices_.emplace(instance.value, id);
     return id;
 }
@@ -398,7 +409,8 @@ Result<EdgeId> Builder::edge_of(InstanceIndex instance) {
     model_.edges.push_back(make_edge(curve->curve, *start, *end, same_sense == curve->same_sense,
                                      file_.id(instance), model_, units_.uncertainty_mm,
                                      diagnostics_));
-    if (Status checked = check_extent(model_.edges.back()); !checked) return checked.error();
+    if (Status checked = check_extent(model_.edges.back()); !checked)
+        return in_file(checked.error(), instance);
     edges_.emplace(instance.value, id);
     return id;
 }

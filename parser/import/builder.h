@@ -46,6 +46,7 @@ private:
     Status add_loop(const ShellRecord& record, const LoopRecord& loop);
     Result<Coedge> coedge_of(InstanceIndex loop, const EdgeUse& use);
     bool find_stand_ins(const ShellRecord& record, const LoopRecord& loop, std::uint32_t use);
+    Diagnostic in_file(Diagnostic found, InstanceIndex instance) const;
     Result<VertexId> vertex_of(InstanceIndex user, InstanceIndex instance);
     Result<EdgeId> edge_of(InstanceIndex instance);
 

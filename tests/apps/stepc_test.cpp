@@ -1,6 +1,8 @@
 // The program itself: what it prints where, and its exit status. docs/exit-status.md is its contract.
 
 #include <cctype>
+#include <cmath>
+#include <regex>
 
 #include "apps/command_line.h"
 #include "apps/program.h"
@@ -116,6 +118,43 @@ TEST_CASE("stepc: a part in the wrong unit is refused with its size, and so is a
     with("SI_UNIT($,.METRE.)", "SI_UNIT(.EXA.,.METRE.)");
     check_failure(folder.run("stepc q.step"), 5, "more than 1 km from the origin");
     CHECK(folder.files() == std::set<std::string>{"p.step", "q.step", "z"});
+}
+
+TEST_CASE("stepc: one damaged number neither hangs nor prints beyond the part") {
+    const Folder folder("stepc-damaged");
+    folder.copy("parts/cube_hole.step", "p.step");
+    const std::string part = text_of(folder / "p.step");
+    const std::regex number(R"([(,]-?[0-9]+\.[0-9]*)");
+    const std::size_t data = part.find("DATA;");
+    std::vector<std::pair<std::size_t, std::size_t>> places;
+    for (std::sregex_iterator
+             at(part.begin() + static_cast<std::ptrdiff_t>(data), part.end(), number),
+         end;
+         at != end; ++at)
+        places.emplace_back(data + static_cast<std::size_t>(at->position()) + 1,
+                            static_cast<std::size_t>(at->length()) - 1);
+    REQUIRE(places.size() > 100);
+    const std::vector<std::string> values{"1.E10", "100.", "1.E308", "-1.E5"};
+    std::size_t refused = 0;
+    for (std::size_t i = 0; i < places.size(); i += 3) {
+        std::string damaged = part;
+        folder.write("q.step", damaged.replace(places[i].first, places[i].second, values[i % 4]));
+        CAPTURE(part.substr(places[i].first - 30, 60));
+        const Ended ended =
+            folder.run("stepc q.step --layer-height 1 -o q.lyr && lyrview q.lyr --info");
+        CHECK((ended.status == 0 || ended.status == 3 || ended.status == 5));
+        if (ended.status != 0) {
+            ++refused;
+            CHECK(folder.files() == std::set<std::string>{"p.step", "q.step"});
+            continue;
+        }
+        std::smatch box;
+        const std::regex extent(R"(box +x (\S+) to (\S+), y (\S+) to (\S+),)");
+        REQUIRE(std::regex_search(ended.out, box, extent));
+        for (const int k : {1, 2, 3, 4}) CHECK(std::abs(std::stod(box[k])) < 1000);
+        fs::remove(folder / "q.lyr");
+    }
+    CHECK(refused > 10);
 }
 
 TEST_CASE("stepc: errors are shown before warnings, and as many as can be read") {

@@ -72,6 +72,46 @@ TEST_CASE("cells 2: where a slope is said to have one sign, it has; flat cells a
     }
 }
 
+// The line's homogeneous control points, and those of the cubic with its ends and derivatives there.
+double worst_distance_from_cubic(const BezierPatch& patch, bool along_u, double fixed) {
+    const int degree = along_u ? patch.degree_u : patch.degree_v;
+    const auto at = [&](double t) { return along_u ? Point2(t, fixed) : Point2(fixed, t); };
+    const Partials first = partials(patch, at(0)), last = partials(patch, at(1));
+    const Vector3 leaves = along_u ? first.du : first.dv, arrives = along_u ? last.du : last.dv;
+    double worst = 0;
+    for (double t = 0; t <= 1; t += 1.0 / (16 * degree)) {
+        const double r = 1 - t;
+        const Point3 cubic = r * r * (1 + 2 * t) * first.point + t * t * (3 - 2 * t) * last.point +
+                             r * r * t * leaves - t * t * r * arrives;
+        worst = std::max(worst, (partials(patch, at(t)).point - cubic).norm());
+    }
+    return worst;
+}
+
+TEST_CASE("patch 2: the quartic part bounds the distance from cubics, and not too generously") {
+    std::mt19937 engine(3);
+    std::uniform_real_distribution<double> coordinate(-1, 1);
+    for (int degree = 1; degree <= 9; ++degree) {
+        for (int number = 0; number < 10; ++number) {
+            CAPTURE(degree);
+            BezierPatch patch{0, 1, 0, 1, degree, 1 + number % 9, {}};
+            for (int i = 0; i < (patch.degree_u + 1) * (patch.degree_v + 1); ++i)
+                patch.control_points.push_back(
+                    {coordinate(engine), coordinate(engine), coordinate(engine), 1});
+            const QuarticPart part = quartic_part(patch);
+            double along_u = 0, along_v = 0;
+            for (const double fixed : {0.0, 0.3, 0.5, 0.8, 1.0}) {
+                along_u = std::max(along_u, worst_distance_from_cubic(patch, true, fixed));
+                along_v = std::max(along_v, worst_distance_from_cubic(patch, false, fixed));
+            }
+            CHECK(along_u <= part.along_u_mm + 1e-12);
+            CHECK(along_v <= part.along_v_mm + 1e-12);
+            CHECK(part.along_u_mm <= 1000 * along_u + 1e-12);
+            CHECK(part.along_v_mm <= 1000 * along_v + 1e-12);
+        }
+    }
+}
+
 TEST_CASE("mesh 2: every border piece has the cells on its two sides, at the rim one") {
     test::Random random(3);
     for (int number = 0; number < 60; ++number) {
