@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <string>
 
@@ -25,12 +26,22 @@ public:
 
     // Exact where it is more than `enough_mm`, else not above that.
     double mm(const Point3& point, double enough_mm) {
-        if (!foot_) return (evaluate(surface_, invert(surface_, point)) - point).norm();
+        if (!foot_) return distance_to_elementary(point);
         foot_->move_to(point, enough_mm);
         return foot_->distance_mm();
     }
 
 private:
+    double distance_to_elementary(const Point3& point) const {
+        if (const auto* plane = std::get_if<Plane>(&surface_))
+            return std::abs(plane->frame.z.dot(point - plane->frame.origin));
+        if (const auto* cylinder = std::get_if<Cylinder>(&surface_)) {
+            const Vector3 out = cylinder->frame.z.cross(point - cylinder->frame.origin);
+            return std::abs(out.norm() - cylinder->radius_mm);
+        }
+        return (evaluate(surface_, invert(surface_, point)) - point).norm();
+    }
+
     const Surface& surface_;
     std::optional<SurfaceFoot> foot_;
 };

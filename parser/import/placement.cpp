@@ -32,10 +32,12 @@ Vector3 first_projected(const Vector3& z, const Vector3* wanted) {
 
 // The coordinates of a point or direction; of a plane one, with z = 0.
 Result<std::array<double, 3>> read_triple(const File& file, InstanceIndex instance, int dimension) {
+    std::array<double, 3> values{};
+    if (file.plain_reals(instance, values) == static_cast<std::size_t>(dimension)) return values;
+    values = {};
     Fields fields(file, instance, 2);
     const part21::Value list = fields.value(1);
     if (!fields.ok()) return fields.error();
-    std::array<double, 3> values{};
     const Result<std::size_t> count = list.read_reals(values);
     if (!count) return count.error();
     if (*count != static_cast<std::size_t>(dimension))

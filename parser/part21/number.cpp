@@ -88,4 +88,32 @@ std::optional<std::uint64_t> id_of(std::string_view digits) {
     return read.ec == std::errc{} ? std::optional(value) : std::nullopt;
 }
 
+std::optional<std::size_t> plain_reals(const char* p, const char* end, std::span<double> out) {
+    // False, and p may be at the end, if something else comes.
+    const auto take = [&](char expected) {
+        p = skip_blank(p, end);
+        return p != end && *p++ == expected;
+    };
+    if (!take('(')) return std::nullopt;
+    p = skip_blank(p, end);
+    p = p != end && *p == '\'' ? skip_string(p, end) : nullptr;
+    if (!p || !take(',') || !take('(')) return std::nullopt;
+    for (std::size_t count = 0; count < out.size();) {
+        p = skip_blank(p, end);
+        const char* const digits = p != end && *p == '-' ? p + 1 : p;
+        // from_chars would take words as well: inf, nan(0).
+        if (digits == end || !(is_digit(*digits) || *digits == '.')) return std::nullopt;
+        const auto read = std::from_chars(p, end, out[count]);
+        if (read.ec != std::errc{}) return std::nullopt;
+        p = skip_blank(read.ptr, end);
+        ++count;
+        if (p != end && *p == ')') {
+            ++p;
+            return take(')') && take(';') ? std::optional(count) : std::nullopt;
+        }
+        if (!take(',')) return std::nullopt;
+    }
+    return std::nullopt;
+}
+
 }  // namespace lyr::part21

@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 
 namespace lyr::part21 {
@@ -19,6 +20,10 @@ struct NumberToken {
     bool is_real = false;
 };
 NumberToken skip_number(const char* p, const char* end);
+
+// Of a record's arguments from its opening bracket on, "('name',(1.,2.))": how many numbers are in the list. Empty where
+// anything is written in another way, not necessarily a wrong one.
+std::optional<std::size_t> plain_reals(const char* p, const char* end, std::span<double> out);
 
 // Empty when out of range.
 std::optional<double> real_of(std::string_view token);

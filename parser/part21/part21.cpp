@@ -2,6 +2,7 @@
 
 #include "parser/part21/part21.h"
 
+#include "parser/part21/number.h"
 #include "parser/part21/table.h"
 
 namespace lyr::part21 {
@@ -141,6 +142,12 @@ Result<Arguments> File::arguments(InstanceIndex instance) const {
                      "expected a simple instance, found the complex " + type_name(instance));
     }
     return arguments(record(instance, std::size_t{0}));
+}
+
+std::optional<std::size_t> File::plain_reals(InstanceIndex instance, std::span<double> out) const {
+    if (is_complex(instance)) return std::nullopt;
+    const std::size_t place = table_->record_places[record(instance, std::size_t{0}).value];
+    return lyr::part21::plain_reals(table_->at(place), table_->end(), out);
 }
 
 Location File::location(InstanceIndex instance) const {

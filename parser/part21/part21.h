@@ -34,6 +34,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -111,6 +112,10 @@ public:
     // complex is an error too, since its arguments are spread over its records.
     Result<Arguments> arguments(RecordIndex record) const;
     Result<Arguments> arguments(InstanceIndex instance) const;
+
+    // The numbers of an instance that is written plainly as KEYWORD('a name',(1.,2.,3.)), as most are in a file; how many
+    // there are is returned. None: it is not, or there are more than `out` holds; arguments() will tell.
+    std::optional<std::size_t> plain_reals(InstanceIndex instance, std::span<double> out) const;
 
     // Where an instance stands, and a diagnostic there.
     Location location(InstanceIndex instance) const;

@@ -1,5 +1,6 @@
 // Numbers; numbers in brackets are those of the contract in number.h.
 
+#include <array>
 #include <bit>
 #include <cstdio>
 #include <cstdlib>
@@ -112,4 +113,46 @@ TEST_CASE("what is no number is an error") {
 }
 
 }  // namespace
+TEST_CASE(
+    "plain reals: what is written plainly reads as the general way reads it, all else is left to "
+    "that") {
+    std::array<double, 3> values{};
+    const auto read = [&](const std::string& text) {
+        return plain_reals(text.data(), text.data() + text.size(), values);
+    };
+    CHECK(read("('',(1.,-2.5E-3,.5));") == 3);
+    CHECK(values == std::array<double, 3>{1, -2.5e-3, 0.5});
+    CHECK(read("( 'it''s' /* c */ ,\n( 7 ,\t1e3 ) ) ;") == 2);
+    CHECK(values[0] == 7);
+    CHECK(values[1] == 1000);
+    for (const char* other : {"",
+                              "(",
+                              "(''",
+                              "('',",
+                              "('',(",
+                              "('',(1.",
+                              "('',(1.)",
+                              "('',(1.))",
+                              "('',(1.,))",
+                              "('',());",
+                              "($,(1.));",
+                              "('',(1.,2.,3.,4.));",
+                              "('',(+1.));",
+                              "('',(1D5));",
+                              "('',(1.E));",
+                              "('',(1.5.2));",
+                              "('',(-inf));",
+                              "('',(-nan(0)));",
+                              "('',(inf));",
+                              "('',(1e999));",
+                              "('',(#5));",
+                              "('',(1.),2);",
+                              "('',(1. 2.));",
+                              "('open,(1.));",
+                              "('',((1.)));"}) {
+        CAPTURE(other);
+        CHECK_FALSE(read(other));
+    }
+}
+
 }  // namespace lyr::part21
