@@ -65,29 +65,35 @@ Node node_at(const Curve& curve, double t, double weight) {
     return {point, weight * tangent};
 }
 
-LoopNodes nodes_of(const Model& model, const Loop& loop, Aim aim) {
-    LoopNodes nodes;
+// Calls visit(node) along the loop.
+template <class Visit>
+void for_each_node(const Model& model, const Loop& loop, Aim aim, Visit visit) {
     for (std::uint32_t c = loop.first_coedge; c < loop.first_coedge + loop.coedge_count; ++c) {
         const Coedge& use = model.coedges[c];
         const Edge& edge = model[use.edge];
         const double from = use.reversed ? edge.t_end : edge.t_start;
         const double to = use.reversed ? edge.t_start : edge.t_end;
-        nodes.push_back({evaluate(edge.curve, from), Vector3::Zero()});
+        visit(Node{evaluate(edge.curve, from), Vector3::Zero()});
         if (std::holds_alternative<Line>(edge.curve)) {
             // All integrands are linear along lines.
-            nodes.push_back(node_at(edge.curve, 0.5 * (from + to), to - from));
+            visit(node_at(edge.curve, 0.5 * (from + to), to - from));
             continue;
         }
         const int count = panels(edge, aim);
         const double width = (to - from) / count;
-        nodes.reserve(nodes.size() + gauss_at.size() * static_cast<std::size_t>(count));
         for (int panel = 0; panel < count; ++panel) {
             for (std::size_t i = 0; i < gauss_at.size(); ++i) {
                 const double t = from + (panel + gauss_at[i]) * width;
-                nodes.push_back(node_at(edge.curve, t, gauss_weight[i] * width));
+                visit(node_at(edge.curve, t, gauss_weight[i] * width));
             }
         }
     }
+}
+
+LoopNodes nodes_of(const Model& model, const Loop& loop, Aim aim) {
+    LoopNodes nodes;
+    nodes.reserve(2 * std::size_t{loop.coedge_count});
+    for_each_node(model, loop, aim, [&](const Node& node) { nodes.push_back(node); });
     return nodes;
 }
 
@@ -132,10 +138,6 @@ struct AroundAxis {
 
 double handedness(const Frame& frame) {
     return frame.x.cross(frame.y).dot(frame.z) < 0 ? -1 : 1;
-}
-
-double plane_area(const Plane& plane, const FaceNodes& face, double sense) {
-    return sense * plane.frame.z.dot(vector_area(face, plane.frame.origin));
 }
 
 double cylinder_area(const Cylinder& cylinder, const FaceNodes& face, double sense) {
@@ -332,12 +334,26 @@ struct FaceIntegrals {
     double area, flux, whole = 0;
 };
 
+// Most faces are plane, and need no nodes kept.
+FaceIntegrals plane_integrals(const Model& model, const Face& face, const Point3& c, Aim aim) {
+    const Plane& plane = std::get<Plane>(face.surface);
+    Vector3 doubled = Vector3::Zero();
+    for (std::uint32_t l = face.first_loop; l < face.first_loop + face.loop_count; ++l) {
+        for_each_node(model, model.loops[l], aim,
+                      [&](const Node& node) { doubled += (node.point - c).cross(node.step); });
+    }
+    const Vector3 outward = doubled / 2;
+    return {(face.same_sense ? 1 : -1) * plane.frame.z.dot(outward),
+            (plane.frame.origin - c).dot(outward)};
+}
+
 FaceIntegrals integrals_of(const Model& model, const Face& face, const Point3& c, Aim aim) {
     if (std::holds_alternative<SharedBSplineSurface>(face.surface)) {
         const FreeformIntegrals integrals =
             freeform_integrals(model, face, c, aim == Aim::sign ? for_signs : for_figures);
         return {integrals.area_mm2, integrals.flux_mm3};
     }
+    if (std::holds_alternative<Plane>(face.surface)) return plane_integrals(model, face, c, aim);
     const FaceNodes nodes = nodes_of(model, face, aim);
     const double sense = face.same_sense ? 1 : -1;
     const Vector3 outward = vector_area(nodes, c);
@@ -346,9 +362,7 @@ FaceIntegrals integrals_of(const Model& model, const Face& face, const Point3& c
         double sense;
         Vector3 outward;
         Point3 c;
-        FaceIntegrals operator()(const Plane& s) const {
-            return {plane_area(s, nodes, sense), (s.frame.origin - c).dot(outward)};
-        }
+        FaceIntegrals operator()(const Plane&) const { return {0, 0}; }  // see above
         FaceIntegrals operator()(const Cylinder& s) const {
             const double area = cylinder_area(s, nodes, sense);
             return {area, (s.frame.origin - c).dot(outward) + sense * s.radius_mm * std::abs(area)};

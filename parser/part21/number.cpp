@@ -83,7 +83,13 @@ std::optional<std::int64_t> integer_of(std::string_view token) {
 }
 
 std::optional<std::uint64_t> id_of(std::string_view digits) {
+    // So many always fit; a file has as many as anything in it.
+    constexpr std::size_t always_fit = 19;
     std::uint64_t value = 0;
+    if (!digits.empty() && digits.size() <= always_fit) {
+        for (const char c : digits) value = 10 * value + static_cast<std::uint64_t>(c - '0');
+        return value;
+    }
     const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     return read.ec == std::errc{} ? std::optional(value) : std::nullopt;
 }

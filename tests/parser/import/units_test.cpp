@@ -63,7 +63,7 @@ TEST_CASE("1: lengths in SI units and in units converted from them") {
     CHECK(height(box_in(si(".CENTI."))) == 30);
     CHECK(height(box_in(si("$"))) == 3000);
     CHECK(height(box_in(si(".MICRO."))) == doctest::Approx(0.003).epsilon(1e-15));
-    CHECK(height(box_in(si(".KILO."))) == 3e6);
+    CHECK(height(box_in(si(".HECTO."))) == 3e5);
     CHECK(height(box_in([](StepText& step) {
               return step.context({step.converted_length("INCH", 25.4, step.si_length(".MILLI."))});
           })) == doctest::Approx(76.2).epsilon(1e-15));
