@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "kernel/brep/assembly.h"
 #include "kernel/brep/loop_orientation.h"
 #include "kernel/brep/model.h"
 
@@ -146,6 +147,12 @@ private:
     std::mt19937 random_;
     Model to_;
 };
+
+// Both side by side, each with its own of everything.
+inline Model joined(Model a, const Model& b) {
+    append(a, b);
+    return a;
+}
 
 inline Model exploded(const Model& model, const Explosion& how) {
     return Exploder(model, how).result();

@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include "kernel/brep/edge_deviation.h"
 #include "kernel/brep/free_edges.h"
 #include "kernel/brep/placement.h"
 #include "kernel/brep/validity.h"
@@ -140,6 +141,114 @@ TEST_CASE("sewing 1: gaps up to ten times as wide are closed, and each is named"
             CHECK(diagnostic.status == ExitStatus::geometry);
             CHECK(diagnostic.where.entity != 0);
             CHECK(diagnostic.where.x_mm.has_value());
+        }
+    }
+}
+
+TEST_CASE("healing 1: edges without length are left out") {
+    for (const Model& original : {box(3, 4, 5), drilled_box(10, 8, 6, 2), half_round(4, 10)}) {
+        // One in front of every coedge of the first face, from a vertex to another at the same place.
+        Model model = original;
+        std::vector<Coedge> coedges;
+        for (std::size_t l = 0; l < model.loops.size(); ++l) {
+            Loop& loop = model.loops[l];
+            const auto first = static_cast<std::uint32_t>(coedges.size());
+            for (std::uint32_t c = 0; c < loop.coedge_count; ++c) {
+                const Coedge use = model.coedges[loop.first_coedge + c];
+                if (l == 0) {
+                    const Point3 at = model[model.start_of(use)].point;
+                    const VertexId other{model.vertices.size()};
+                    model.vertices.push_back({at, 7000});
+                    coedges.push_back({EdgeId{model.edges.size()}, false});
+                    model.edges.push_back(
+                        {Line{at, Vector3::UnitX()}, 0, 0, other, model.start_of(use), 7001});
+                }
+                coedges.push_back(use);
+            }
+            loop.first_coedge = first;
+            loop.coedge_count = static_cast<std::uint32_t>(coedges.size()) - first;
+        }
+        model.coedges = coedges;
+        REQUIRE(!validate(model).empty());
+        Diagnostics found;
+        heal(model, reach, found);
+        CHECK(found.size() == 2);
+        CHECK(validate(model).empty());
+        CHECK(model.edges.size() == original.edges.size());
+        CHECK(volume_of(model) == doctest::Approx(volume_of(original)));
+    }
+}
+
+TEST_CASE("healing 1: a face of nothing but short edges goes with them") {
+    // A box whose edge is a sliver of a face, all its edges shorter than the resolution but two.
+    Model model = box(3, 4, 5);
+    const Point3 corner = model.vertices[0].point;
+    Builder b;
+    const VertexId v[3] = {b.vertex(corner.x(), corner.y(), corner.z()),
+                           b.vertex(corner.x() + 1e-8, corner.y(), corner.z()),
+                           b.vertex(corner.x(), corner.y() + 1e-8, corner.z())};
+    const EdgeId e[3] = {b.line(v[0], v[1]), b.line(v[1], v[2]), b.line(v[2], v[0])};
+    b.face(Plane{Builder::frame_at(corner)}, true, {{{e[0]}, {e[1]}, {e[2]}}});
+    model = joined(model, b.finish());
+    Diagnostics found;
+    heal(model, reach, found);
+    CHECK(model.faces.size() == 6);
+    CHECK(model.edges.size() == 12);
+}
+
+TEST_CASE("healing 1: an edge around a closed curve may end in another vertex than it begins in") {
+    for (const double end : {2 * pi, 1e-9, -1e-9, -2 * pi}) {
+        CAPTURE(end);
+        Model model = frustum(2, 2, 5, Side::two_loops);
+        for (Edge& edge : model.edges) {
+            edge.end = VertexId{model.vertices.size()};
+            model.vertices.push_back({evaluate(edge.curve, end), 8000});
+            edge.t_end = edge.t_start + end;
+        }
+        if (end < 0) {
+            for (Coedge& coedge : model.coedges) coedge.reversed = !coedge.reversed;
+        }
+        REQUIRE(!validate(model).empty());
+        Diagnostics found;
+        heal(model, reach, found);
+        CHECK(validate(model).empty());
+        CHECK(volume_of(model) == doctest::Approx(pi * 4 * 5));
+    }
+}
+
+TEST_CASE("edges off their surfaces are named, with the distance") {
+    for (const Model& original : {box(3, 4, 5), frustum(1, 3, 5, Side::halves), halved_torus(5, 2),
+                                  bent_cube(BezierVolume(2, 20, 0.3, false, 3))}) {
+        Diagnostics none;
+        report_deviations(original, accepted_mm, none);
+        CHECK(none.empty());
+        // Straight off the first face's surface.
+        Model model = original;
+        const Face& face = model.faces[0];
+        Edge& edge =
+            model.edges[model.coedges[model.loops[face.first_loop].first_coedge].edge.value];
+        const Point3 point = point_on(edge, 0.48);
+        const Vector3 off = normal(face.surface, invert(face.surface, point));
+        for (const double distance_mm : {0.5 * accepted_mm, 3 * accepted_mm}) {
+            Model bent = model;
+            Edge& moved = bent.edges[static_cast<std::size_t>(&edge - model.edges.data())];
+            moved.curve =
+                transformed(moved.curve, Eigen::Affine3d(Eigen::Translation3d(distance_mm * off)));
+            Diagnostics found;
+            report_deviations(bent, accepted_mm, found);
+            if (distance_mm <= accepted_mm) {
+                CHECK(found.empty());
+                continue;
+            }
+            REQUIRE(!found.empty());
+            CHECK(found[0].severity == Severity::warning);
+            CHECK(found[0].status == ExitStatus::geometry);
+            const std::string name = '#' + std::to_string(edge.source) + ' ';
+            const auto names = [&](const Diagnostic& d) {
+                return d.where.entity == face.source && d.message.find(name) != std::string::npos &&
+                       d.message.find("0.003 mm") != std::string::npos;
+            };
+            CHECK(std::any_of(found.begin(), found.end(), names));
         }
     }
 }
