@@ -166,7 +166,7 @@ void check_mirrored(const Model& model) {
     const Model other = transformed(model, mirror);
     const Cutter cutter(model, tolerance), mirrored(other, tolerance);
     const HeightRange range = cutter.height_range();
-    for (double share = 0.017; share < 1; share += 0.05) {
+    for (double share = 0.017; share < 1; share += 0.11) {
         CAPTURE(share);
         const double z = range.bottom_mm + share * (range.top_mm - range.bottom_mm);
         const Section a = cutter.cut(z), b = mirrored.cut(z);
