@@ -296,16 +296,6 @@ bool is_unbroken(const SurfaceSection& section, double from, double to) {
 bool trace(const SurfaceSection& section, int component, double from, double to,
            const Point2& start, const Point2& end, const Tolerance& tolerance,
            std::vector<Segment>& out) {
-    if (const auto* circles = std::get_if<CircleSection>(&section)) {
-        if (const double off_mm = distance_astray(section, component, from, to, start, end);
-            off_mm > 0) {
-            out.push_back({end});
-            return off_mm <= tolerance.trace_mm();
-        }
-        const bool left = circles->counter_clockwise[static_cast<std::size_t>(component)];
-        trace_circle(section, component, from, to, left ? 1 : -1, start, end, out);
-        return true;
-    }
     if (const auto* cone = std::get_if<ConeSection>(&section)) {
         if (std::abs(cone->height_mm) <= resolution_mm) {
             out.push_back({flat(cone->apex)});
@@ -313,10 +303,11 @@ bool trace(const SurfaceSection& section, int component, double from, double to,
             return true;
         }
     }
+    const auto* circles = std::get_if<CircleSection>(&section);
     const bool straight = std::holds_alternative<LineSection>(section) ||
                           std::holds_alternative<GeneratorSection>(section) ||
                           std::holds_alternative<TouchSection>(section);
-    if (straight || !(to > from)) {
+    if (straight || (!circles && !(to > from))) {
         out.push_back({end});
         return true;
     }
@@ -324,6 +315,11 @@ bool trace(const SurfaceSection& section, int component, double from, double to,
         off_mm > 0) {
         out.push_back({end});
         return off_mm <= tolerance.trace_mm();
+    }
+    if (circles) {
+        const bool left = circles->counter_clockwise[static_cast<std::size_t>(component)];
+        trace_circle(section, component, from, to, left ? 1 : -1, start, end, out);
+        return true;
     }
     if (const auto* freeform = std::get_if<FreeformSection>(&section)) {
         trace(*freeform, component, from, to, start, end, tolerance.fit_mm(), out);

@@ -86,36 +86,6 @@ std::vector<Eigen::Affine3d> positions() {
     return result;
 }
 
-// The distance of a point from the nearest of the model's surfaces.
-double off_surfaces(const Model& model, const Point3& point) {
-    double least = 1e9;
-    for (const Face& face : model.faces) {
-        const Point3 foot = evaluate(face.surface, invert(face.surface, point));
-        least = std::min(least, (foot - point).norm());
-    }
-    return least;
-}
-
-double worst_distance(const Model& model, const Section& section) {
-    double worst = 0;
-    for (const SolidSection& solid : section.solids) {
-        for (const Contour& contour : solid.contours) {
-            const auto* path = std::get_if<Path>(&contour);
-            if (!path) continue;
-            Point2 from = path->start;
-            for (const Segment& segment : path->segments) {
-                for (const double share : {0.0, 0.2, 0.5, 0.8}) {
-                    const Point2 p = point_at(from, segment, share);
-                    worst = std::max(worst, off_surfaces(model, {p.x(), p.y(), section.z_mm}));
-                }
-                from = segment.end;
-            }
-            CHECK((from - path->start).norm() == 0);
-        }
-    }
-    return worst;
-}
-
 }  // namespace
 
 TEST_CASE("cutter 2, 3: in every position the areas of closed contours add up to the volume") {

@@ -108,48 +108,10 @@ double volume_of_revolution(const BSplineCurve& c) {
     return volume;
 }
 
-// Closed, not negative, and adding up to the volume.
+// Closed, and adding up to the volume.
 void check_sections(const Model& model, double volume_mm3) {
-    const Tolerance tolerance{0.001};
-    const Cutter cutter(model, tolerance);
-    const HeightRange range = cutter.height_range();
-    constexpr int planes = 300;
-    const double step = (range.top_mm - range.bottom_mm) / planes;
-    double sum = 0, allowed = 0;
-    for (int i = 0; i < planes; ++i) {
-        CAPTURE(i);
-        const Section section = cutter.cut(range.bottom_mm + (i + 0.5) * step);
-        CHECK(section.open == 0);
-        CHECK(section.diagnostics.empty());
-        sum += step * area_of(section);
-        allowed += step * length_of(section) * tolerance.total_mm;
-    }
-    CHECK(std::abs(sum - volume_mm3) < 5e-4 * volume_mm3 + allowed);
-}
-
-// The farthest that contours come from the model's surfaces.
-double worst_distance_mm(const Model& model, const Section& section) {
-    double worst = 0;
-    for (const SolidSection& solid : section.solids) {
-        for (const Contour& contour : solid.contours) {
-            const auto* path = std::get_if<Path>(&contour);
-            if (!path) continue;
-            Point2 from = path->start;
-            for (const Segment& segment : path->segments) {
-                for (const double share : {0.0, 0.2, 0.5, 0.8}) {
-                    const Point2 on = point_at(from, segment, share);
-                    const Point3 p(on.x(), on.y(), section.z_mm);
-                    double least = INFINITY;
-                    for (const Face& face : model.faces)
-                        least = std::min(
-                            least, (evaluate(face.surface, invert(face.surface, p)) - p).norm());
-                    worst = std::max(worst, least);
-                }
-                from = segment.end;
-            }
-        }
-    }
-    return worst;
+    const SectionSum sum = sum_of_sections(model, Tolerance{0.001}, 300);
+    CHECK(std::abs(sum.volume_mm3 - volume_mm3) < 5e-4 * volume_mm3 + sum.allowed_mm3);
 }
 
 std::size_t loops_of(const Section& section) {
@@ -171,8 +133,8 @@ void check_mirrored(const Model& model) {
         const double z = range.bottom_mm + share * (range.top_mm - range.bottom_mm);
         const Section a = cutter.cut(z), b = mirrored.cut(z);
         REQUIRE(loops_of(a) == loops_of(b));
-        CHECK(worst_distance_mm(model, a) <= tolerance.total_mm);
-        CHECK(worst_distance_mm(other, b) <= tolerance.total_mm);
+        CHECK(worst_distance(model, a) <= tolerance.total_mm);
+        CHECK(worst_distance(other, b) <= tolerance.total_mm);
         CHECK(std::abs(area_of(a) - area_of(b)) <= 2 * tolerance.total_mm * length_of(a));
         const auto moment = [](const Section& section) {
             // Twice the area's first moment about x = 0, by the polygon of segment ends: enough to tell left from right.
