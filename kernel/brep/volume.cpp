@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "kernel/brep/freeform_integrals.h"
@@ -25,17 +26,28 @@ namespace {
 
 using std::numbers::pi;
 
-// Gauss-Legendre on [0, 1], five points: exact for polynomials of degree nine.
-constexpr std::array<double, 5> gauss_at{0.04691007703066800, 0.23076534494715845, 0.5,
-                                         0.76923465505284155, 0.95308992296933200};
-constexpr std::array<double, 5> gauss_weight{0.11846344252809454, 0.23931433524968324,
-                                             0.28444444444444444, 0.23931433524968324,
-                                             0.11846344252809454};
+// Gauss-Legendre on [0, 1].
+struct GaussPoint {
+    double at, weight;
+};
+// Exact for polynomials of degree nine, and of degree five.
+constexpr std::array<GaussPoint, 5> five_points{{{0.04691007703066800, 0.11846344252809454},
+                                                 {0.23076534494715845, 0.23931433524968324},
+                                                 {0.5, 0.28444444444444444},
+                                                 {0.76923465505284155, 0.23931433524968324},
+                                                 {0.95308992296933200, 0.11846344252809454}}};
+constexpr std::array<GaussPoint, 3> three_points{
+    {{0.11270166537925831, 5.0 / 18}, {0.5, 8.0 / 18}, {0.88729833462074169, 5.0 / 18}}};
 
 // What integrals are taken for: to be told, or to see which sign they have.
 enum class Aim { figure, sign };
 
-// How many panels of five points an edge needs.
+std::span<const GaussPoint> points_for(Aim aim) {
+    if (aim == Aim::sign) return three_points;
+    return five_points;
+}
+
+// How many panels of such points an edge needs.
 int panels(const Edge& edge, Aim aim) {
     if (const auto* spline = std::get_if<BSplineCurve>(&edge.curve)) {
         const auto points = static_cast<int>(spline->control_points.size());
@@ -65,15 +77,18 @@ Node node_at(const Curve& curve, double t, double weight) {
     return {point, weight * tangent};
 }
 
+enum class Vertices { visited, left_out };
+
 // Calls visit(node) along the loop.
-template <class Visit>
+template <Vertices vertices = Vertices::visited, class Visit>
 void for_each_node(const Model& model, const Loop& loop, Aim aim, Visit visit) {
     for (std::uint32_t c = loop.first_coedge; c < loop.first_coedge + loop.coedge_count; ++c) {
         const Coedge& use = model.coedges[c];
         const Edge& edge = model[use.edge];
         const double from = use.reversed ? edge.t_end : edge.t_start;
         const double to = use.reversed ? edge.t_start : edge.t_end;
-        visit(Node{evaluate(edge.curve, from), Vector3::Zero()});
+        if constexpr (vertices == Vertices::visited)
+            visit(Node{evaluate(edge.curve, from), Vector3::Zero()});
         if (std::holds_alternative<Line>(edge.curve)) {
             // All integrands are linear along lines.
             visit(node_at(edge.curve, 0.5 * (from + to), to - from));
@@ -82,9 +97,9 @@ void for_each_node(const Model& model, const Loop& loop, Aim aim, Visit visit) {
         const int count = panels(edge, aim);
         const double width = (to - from) / count;
         for (int panel = 0; panel < count; ++panel) {
-            for (std::size_t i = 0; i < gauss_at.size(); ++i) {
-                const double t = from + (panel + gauss_at[i]) * width;
-                visit(node_at(edge.curve, t, gauss_weight[i] * width));
+            for (const GaussPoint& point : points_for(aim)) {
+                const double t = from + (panel + point.at) * width;
+                visit(node_at(edge.curve, t, point.weight * width));
             }
         }
     }
@@ -339,8 +354,9 @@ FaceIntegrals plane_integrals(const Model& model, const Face& face, const Point3
     const Plane& plane = std::get<Plane>(face.surface);
     Vector3 doubled = Vector3::Zero();
     for (std::uint32_t l = face.first_loop; l < face.first_loop + face.loop_count; ++l) {
-        for_each_node(model, model.loops[l], aim,
-                      [&](const Node& node) { doubled += (node.point - c).cross(node.step); });
+        for_each_node<Vertices::left_out>(model, model.loops[l], aim, [&](const Node& node) {
+            doubled += (node.point - c).cross(node.step);
+        });
     }
     const Vector3 outward = doubled / 2;
     return {(face.same_sense ? 1 : -1) * plane.frame.z.dot(outward),
@@ -423,9 +439,13 @@ double chord_length(const Model& model, const Face& face) {
         const Loop& loop = model.loops[l];
         for (std::uint32_t c = loop.first_coedge; c < loop.first_coedge + loop.coedge_count; ++c) {
             const Edge& edge = model[model.coedges[c].edge];
+            const Point3 &start = model[edge.start].point, &end = model[edge.end].point;
+            if (std::holds_alternative<Line>(edge.curve)) {
+                length += (end - start).norm();
+                continue;
+            }
             const Point3 middle = evaluate(edge.curve, 0.5 * (edge.t_start + edge.t_end));
-            length +=
-                (model[edge.start].point - middle).norm() + (model[edge.end].point - middle).norm();
+            length += (start - middle).norm() + (end - middle).norm();
         }
     }
     return length;
