@@ -13,14 +13,6 @@ namespace lyr::importer {
 
 namespace {
 
-enum class Naming : std::uint8_t { unknown, other, representation, shape };
-
-Naming naming(std::string_view keyword) {
-    if (keyword.find("REPRESENTATION") == std::string_view::npos) return Naming::other;
-    return keyword.find("SHAPE_REPRESENTATION") != std::string_view::npos ? Naming::shape
-                                                                          : Naming::representation;
-}
-
 // The record that holds name, items and context.
 part21::RecordIndex body(const File& file, InstanceIndex instance) {
     return file.is_complex(instance) ? file.record(instance, "REPRESENTATION")
@@ -94,21 +86,16 @@ void RepresentationTable::unite(RepresentationId a, RepresentationId b) {
 }
 
 Status RepresentationTable::read_representations(const File& file) {
-    std::vector<Naming> known;  // by KeywordId
-    const auto naming_of = [&](part21::RecordIndex record) {
-        const part21::KeywordId id = file.keyword_of(record);
-        if (id.value >= known.size()) known.resize(id.value + 1, Naming::unknown);
-        if (known[id.value] == Naming::unknown) known[id.value] = naming(file.keyword(id));
-        return known[id.value];
+    const auto names_representation = [](std::string_view keyword) {
+        return keyword.find("REPRESENTATION") != std::string_view::npos;
     };
-    for (std::size_t i = 0; i < file.instance_count(); ++i) {
-        const InstanceIndex instance(i);
-        Naming best = Naming::other;
+    for (const InstanceIndex instance : file.instances_where(names_representation)) {
+        bool is_shape = false;
         for (std::size_t k = 0; k < file.record_count(instance); ++k) {
-            best = std::max(best, naming_of(file.record(instance, k)));
+            const part21::KeywordId id = file.keyword_of(file.record(instance, k));
+            is_shape |= file.keyword(id).find("SHAPE_REPRESENTATION") != std::string_view::npos;
         }
-        if (best == Naming::other) continue;
-        const Status status = read_representation(file, instance, best == Naming::shape);
+        const Status status = read_representation(file, instance, is_shape);
         if (!status) return status;
     }
     return Done{};

@@ -193,10 +193,8 @@ bool Indexer::skipped_section(bool is_reference) {
 
 // Remembers #1=<file#anchor>; p_ stays in front of it for what else may be there.
 bool Indexer::reference_entry() {
-    const char* digits = p_ + 1;
-    const char* after = skip_digits(digits, end_);
-    const auto id = id_of({digits, static_cast<std::size_t>(after - digits)});
-    if (after == digits) return true;
+    const auto [after, id] = read_id(p_ + 1, end_);
+    if (after == p_ + 1) return true;
     if (!id) return fail(p_, "the number of this instance name is beyond 64 bits");
     const char* equals = skip_blank(after, end_);
     const char* resource = equals < end_ ? skip_blank(equals + 1, end_) : end_;

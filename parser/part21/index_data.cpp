@@ -37,10 +37,9 @@ bool Indexer::data_section() {
 
 bool Indexer::instance() {
     const char* place = p_;
-    const char* digits = p_ + 1;
-    p_ = skip_digits(digits, end_);
-    if (p_ == digits) return expected("a number after #");
-    const auto id = id_of({digits, static_cast<std::size_t>(p_ - digits)});
+    const auto [after, id] = read_id(p_ + 1, end_);
+    p_ = after;
+    if (after == place + 1) return expected("a number after #");
     if (!id) return fail(place, "the number of this instance name is beyond 64 bits");
     id_ = *id;
     if (!take('=', "after the name of an instance")) return false;

@@ -11,9 +11,10 @@ namespace {
 
 constexpr std::size_t first_slots = 1024;
 
-std::uint64_t load(const char* p, std::size_t count) {
-    std::uint64_t word = 0;
-    std::memcpy(&word, p, count);
+template <class Word>
+std::uint64_t load(const char* p) {
+    Word word;
+    std::memcpy(&word, p, sizeof word);
     return word;
 }
 
@@ -24,12 +25,21 @@ std::uint64_t mix(std::uint64_t hash, std::uint64_t word) {
     return hash ^ (hash >> 32);
 }
 
+// Whole words only, the last of which may overlap the one before: no load's size depends on the text.
 std::uint64_t hash_of(std::string_view text) {
     std::uint64_t hash = text.size();
-    const char* p = text.data();
-    std::size_t left = text.size();
-    for (; left > 8; left -= 8, p += 8) hash = mix(hash, load(p, 8));
-    return mix(hash, load(p, left));
+    const char* const last = text.data() + text.size();
+    if (text.size() >= 8) {
+        for (const char* p = text.data(); last - p > 8; p += 8)
+            hash = mix(hash, load<std::uint64_t>(p));
+        return mix(hash, load<std::uint64_t>(last - 8));
+    }
+    if (text.size() >= 4) {
+        const std::uint64_t front = load<std::uint32_t>(text.data());
+        return mix(hash, front << 32 | load<std::uint32_t>(last - 4));
+    }
+    for (const char c : text) hash = hash << 8 | static_cast<unsigned char>(c);
+    return mix(hash, 0);
 }
 
 }  // namespace

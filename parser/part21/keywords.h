@@ -20,6 +20,7 @@ public:
     KeywordId intern(std::string_view spelling);
     // Not valid() for a keyword that has not been met.
     KeywordId find(std::string_view upper_case) const;
+    std::size_t count() const { return texts_.size(); }
     std::string_view text(KeywordId keyword) const { return texts_[keyword.value]; }
 
 private:

@@ -82,16 +82,14 @@ std::optional<std::int64_t> integer_of(std::string_view token) {
     return read.ec == std::errc{} ? std::optional(value) : std::nullopt;
 }
 
-std::optional<std::uint64_t> id_of(std::string_view digits) {
-    // So many always fit; a file has as many as anything in it.
-    constexpr std::size_t always_fit = 19;
+IdToken read_id(const char* p, const char* end) {
+    constexpr std::ptrdiff_t always_fit = 19;
+    const char* const first = p;
     std::uint64_t value = 0;
-    if (!digits.empty() && digits.size() <= always_fit) {
-        for (const char c : digits) value = 10 * value + static_cast<std::uint64_t>(c - '0');
-        return value;
-    }
-    const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    return read.ec == std::errc{} ? std::optional(value) : std::nullopt;
+    for (; p < end && is_digit(*p); ++p) value = 10 * value + static_cast<std::uint64_t>(*p - '0');
+    if (p - first <= always_fit) return {p, p > first ? std::optional(value) : std::nullopt};
+    const auto read = std::from_chars(first, p, value);
+    return {p, read.ec == std::errc{} ? std::optional(value) : std::nullopt};
 }
 
 std::optional<std::size_t> plain_reals(const char* p, const char* end, std::span<double> out) {

@@ -28,7 +28,11 @@ std::optional<std::size_t> plain_reals(const char* p, const char* end, std::span
 // Empty when out of range.
 std::optional<double> real_of(std::string_view token);
 std::optional<std::int64_t> integer_of(std::string_view token);
-// Digits only.
-std::optional<std::uint64_t> id_of(std::string_view digits);
+// Of the digits at p, as far as they go.
+struct IdToken {
+    const char* after;                // p if there are none
+    std::optional<std::uint64_t> id;  // empty when out of range
+};
+IdToken read_id(const char* p, const char* end);
 
 }  // namespace lyr::part21

@@ -13,6 +13,19 @@ Result<std::unique_ptr<Table>> indexed(std::unique_ptr<Table> table) {
     return table;
 }
 
+// In the order of the file, with each instance once.
+template <class Matches>
+std::vector<InstanceIndex> instances_if(const Table& table, Matches matches) {
+    std::vector<InstanceIndex> found;
+    const std::vector<KeywordId>& keywords = table.record_keywords;
+    for (std::size_t record = table.first_record[0]; record < keywords.size(); ++record) {
+        if (!matches(keywords[record])) continue;
+        const InstanceIndex instance = table.instance_of(RecordIndex(record));
+        if (found.empty() || found.back() != instance) found.push_back(instance);
+    }
+    return found;
+}
+
 }  // namespace
 
 File::File(std::unique_ptr<Table> table) : table_(std::move(table)) {}
@@ -119,17 +132,16 @@ bool File::is(InstanceIndex instance, std::string_view upper_case) const {
 }
 
 std::vector<InstanceIndex> File::instances_of(std::string_view upper_case) const {
-    std::vector<InstanceIndex> found;
-    const KeywordId keyword = keyword_id(upper_case);
-    if (!keyword.valid()) return found;
-    std::size_t record = table_->first_record[0];
-    for (std::size_t i = 0; i < instance_count(); ++i) {
-        const std::size_t last = table_->first_record[i + 1];
-        bool has = false;
-        for (; record < last; ++record) has |= table_->record_keywords[record] == keyword;
-        if (has) found.push_back(InstanceIndex(i));
-    }
-    return found;
+    const KeywordId wanted = keyword_id(upper_case);
+    if (!wanted.valid()) return {};
+    return instances_if(*table_, [wanted](KeywordId keyword) { return keyword == wanted; });
+}
+
+std::vector<InstanceIndex> File::instances_where(
+    const std::function<bool(std::string_view)>& matches) const {
+    std::vector<char> wanted(table_->keywords.count());
+    for (std::size_t k = 0; k < wanted.size(); ++k) wanted[k] = matches(keyword(KeywordId(k)));
+    return instances_if(*table_, [&](KeywordId keyword) { return wanted[keyword.value] != 0; });
 }
 
 Result<Arguments> File::arguments(RecordIndex record) const {

@@ -32,6 +32,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -107,6 +108,9 @@ public:
     // All instances with a record of this keyword, in the order of the file; one scan over
     // integers.
     std::vector<InstanceIndex> instances_of(std::string_view upper_case) const;
+    // The same of all keywords that match.
+    std::vector<InstanceIndex> instances_where(
+        const std::function<bool(std::string_view keyword)>& matches) const;
 
     // Errors: the text of the record is malformed. For an instance: its only record; that it is
     // complex is an error too, since its arguments are spread over its records.

@@ -84,16 +84,19 @@ Result<std::uint64_t> Value::as_id() const {
                      ExitStatus::unsupported);
     }
     if (kind_ != Kind::reference) return expected("a reference #id");
-    const auto id = id_of(token(table_->at(offset_), table_->end()).substr(1));
+    const auto id = read_id(table_->at(offset_) + 1, table_->end()).id;
     if (!id) return expected("an #id of at most 64 bits");
     return *id;
 }
 
 Result<InstanceIndex> Value::as_reference() const {
+    if (kind_ == Kind::reference) {
+        const auto read = read_id(table_->at(offset_) + 1, table_->end()).id;
+        const InstanceIndex instance = read ? table_->find(*read) : InstanceIndex();
+        if (instance.valid()) return instance;
+    }
     const Result<std::uint64_t> id = as_id();
     if (!id) return id.error();
-    const InstanceIndex instance = table_->find(*id);
-    if (instance.valid()) return instance;
     if (const auto* external = table_->external(*id)) {
         const std::string_view resource = external->resource;
         return error(excerpt() + " is in another file, " +
