@@ -11,7 +11,9 @@
 //  3. Holes and islands merge and vanish, regions split and are joined. What no disc of diameter `allowed_mm` fits into
 //     is left out and counted.
 //  4. Contours are closed, have the material on the left and are sorted, as those of kernel/region.
-//  5. `unresolved` says where and why no result could be made.
+//  5. Every result is checked (offset_check.h). One that fails is made again by a second method, which shares only the
+//     region operations with the first, and after the region itself has been cleaned: `second_method` says so. If that
+//     fails too, `unresolved` says where and why; the contours are those of the second method then.
 //
 // Offsets of one region by several distances are best made of the region each, so that errors do not add up.
 

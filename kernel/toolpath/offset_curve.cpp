@@ -17,10 +17,6 @@ namespace {
 
 constexpr double full_turn_rad = 2 * std::numbers::pi;
 
-// A corner that turns back by nearly half a turn is gone round, whatever its sign says: to cover too much within the
-// distance does no harm, and round-off decides the sign where two arcs meet in a cusp.
-constexpr double cusp_rad = 1e-3;
-
 Vector2 right_of(const Vector2& direction) {
     return {direction.y(), -direction.x()};
 }

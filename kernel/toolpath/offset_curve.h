@@ -19,6 +19,10 @@
 
 namespace lyr {
 
+// A corner that turns back by nearly half a turn is gone round, whatever its sign says: to cover too much within the
+// distance does no harm, and round-off decides the sign where two arcs meet in a cusp.
+inline constexpr double cusp_rad = 1e-3;
+
 std::vector<Contour> offset_curves(Region region, const OffsetRequest& request);
 
 }  // namespace lyr

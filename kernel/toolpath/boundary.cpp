@@ -1,0 +1,145 @@
+// A contour winds around a point as often as its chords do, and once more or less for each arc between which and its
+// chord the point lies. So no arc needs to be cut where it turns.
+
+#include "kernel/toolpath/boundary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace lyr {
+namespace {
+
+constexpr double full_turn_rad = 2 * std::numbers::pi;
+
+Vector2 left_of(const Vector2& direction) {
+    return {-direction.y(), direction.x()};
+}
+
+BoundaryPiece piece_of(const FullCircle& circle, std::uint32_t contour) {
+    const double turn = circle.counter_clockwise ? 1 : -1;
+    const Vector2 radius(circle.radius_mm, 0), tangent(0, turn);
+    return {.start = circle.centre + radius,
+            .end = circle.centre + radius,
+            .start_tangent = tangent,
+            .end_tangent = tangent,
+            .middle = circle.centre - radius,
+            .middle_tangent = -tangent,
+            .curvature_per_mm = turn / circle.radius_mm,
+            .length_mm = full_turn_rad * circle.radius_mm,
+            .contour = contour,
+            .is_circle = true,
+            .is_wide = true};
+}
+
+BoundaryPiece piece_of(const Point2& start, const Segment& segment, std::uint32_t contour) {
+    const Vector2 chord = segment.end - start;
+    const double half2 = chord.squaredNorm() / 4, s = segment.sagitta_mm;
+    const Vector2 along = chord.normalized();
+    return {.start = start,
+            .end = segment.end,
+            .start_tangent = start_tangent(start, segment),
+            .end_tangent = end_tangent(start, segment),
+            .middle = (start + segment.end) / 2 - s * left_of(along),
+            .middle_tangent = along,
+            .curvature_per_mm = 2 * s / (half2 + s * s),
+            .length_mm = length_mm(start, segment),
+            .contour = contour,
+            .is_wide = s * s > half2};
+}
+
+std::vector<BoundaryPiece> pieces_of(Region region) {
+    std::vector<BoundaryPiece> pieces;
+    for (std::uint32_t c = 0; c < region.size(); ++c) {
+        if (const auto* circle = std::get_if<FullCircle>(&region[c])) {
+            pieces.push_back(piece_of(*circle, c));
+            continue;
+        }
+        const Path& path = std::get<Path>(region[c]);
+        Point2 from = path.start;
+        for (const Segment& segment : path.segments) {
+            if (segment.end == from) continue;
+            pieces.push_back(piece_of(from, segment, c));
+            from = segment.end;
+        }
+    }
+    return pieces;
+}
+
+region::Box2 circle_box(const BoundaryPiece& piece) {
+    const double radius = 1 / piece.curvature_per_mm;
+    const Point2 centre = piece.start + radius * left_of(piece.start_tangent);
+    const Vector2 margin(std::abs(radius), std::abs(radius));
+    return {centre - margin, centre + margin};
+}
+
+// Not the least: that of the tangents' triangle, for what is at most a quarter of a circle.
+region::Box2 box_of(const BoundaryPiece& piece) {
+    if (piece.start_tangent.dot(piece.end_tangent) < 0 || piece.is_wide) return circle_box(piece);
+    region::Box2 box(piece.start);
+    box.extend(piece.end);
+    if (piece.curvature_per_mm == 0) return box;
+    const double tangent_mm = (piece.end - piece.start).squaredNorm() /
+                              (piece.end - piece.start).dot(piece.start_tangent) / 2;
+    return box.extend(piece.start + tangent_mm * piece.start_tangent);
+}
+
+std::vector<region::Box2> boxes_of(const std::vector<BoundaryPiece>& pieces) {
+    std::vector<region::Box2> boxes;
+    boxes.reserve(pieces.size());
+    for (const BoundaryPiece& piece : pieces) boxes.push_back(box_of(piece));
+    return boxes;
+}
+
+// Whether a point is right of a chord. Where the chord passes above or below it all the way, no product decides: its
+// round-off could contradict the comparison of heights by which chords are counted.
+bool is_right_of_chord(const Point2& point, const BoundaryPiece& piece) {
+    const Vector2 chord = piece.end - piece.start;
+    const bool start_above = piece.start.y() > point.y(), end_above = piece.end.y() > point.y();
+    const bool start_beyond = piece.start.x() > point.x(), end_beyond = piece.end.x() > point.x();
+    if (start_above == end_above && start_beyond != end_beyond) return start_above == end_beyond;
+    return cross(point - piece.start, chord) > 0;
+}
+
+// What it adds to the winding around a point, by a ray to the right.
+int winding_of(const BoundaryPiece& piece, const Point2& point) {
+    const bool right = is_right_of_chord(point, piece);
+    const bool rises = piece.end.y() > point.y();
+    int winding = 0;
+    if (rises != (piece.start.y() > point.y()) && right != rises) winding = rises ? 1 : -1;
+    if (piece.curvature_per_mm == 0) return winding;
+    const bool turns_left = piece.curvature_per_mm > 0;
+    if (!piece.is_circle && right != turns_left) return winding;
+    const bool is_inside = (offset_mm(piece.carrier(), point) < 0) == turns_left;
+    return is_inside ? winding + (turns_left ? 1 : -1) : winding;
+}
+
+}  // namespace
+
+double BoundaryPiece::distance_mm(const Point2& point) const {
+    const bool before = (point - start).dot(start_tangent) < 0;
+    const bool after = (point - end).dot(end_tangent) > 0;
+    // As distance_mm() of kernel/contour.
+    const bool beside = is_circle || (is_wide ? !(before && after) : !(before || after));
+    if (beside) return std::abs(offset_mm(carrier(), point));
+    return std::sqrt(std::min((point - start).squaredNorm(), (point - end).squaredNorm()));
+}
+
+Boundary::Boundary(Region region) : pieces_(pieces_of(region)), tree_(boxes_of(pieces_)) {}
+
+double Boundary::distance_mm(const Point2& point, double within_mm) const {
+    const Vector2 margin(within_mm, within_mm);
+    double least = within_mm;
+    tree_.meeting({point - margin, point + margin},
+                  [&](std::uint32_t i) { least = std::min(least, pieces_[i].distance_mm(point)); });
+    return least;
+}
+
+int Boundary::winding(const Point2& point) const {
+    const Point2 far(std::max(point.x(), tree_.bounds().max().x()), point.y());
+    int sum = 0;
+    tree_.meeting({point, far}, [&](std::uint32_t i) { sum += winding_of(pieces_[i], point); });
+    return sum;
+}
+
+}  // namespace lyr

@@ -1,0 +1,65 @@
+// The boundary of a region as it is asked about point by point: how far it is, and how often it winds around.
+//
+// Contract
+//  1. winding() counts at any point, also where a contour's segments meet; on the boundary itself it is that of one of
+//     its sides.
+//  2. distance_mm() is exact up to `within_mm`; beyond that it is `within_mm`.
+//
+// Cost: log n for each question and what is near (or, for the winding, to the right) besides.
+
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "kernel/region/box_tree.h"
+#include "kernel/region/region.h"
+
+namespace lyr {
+
+// A segment, or a full circle, which has no ends.
+struct BoundaryPiece {
+    Point2 start, end;
+    Vector2 start_tangent, end_tangent;
+    Point2 middle;
+    Vector2 middle_tangent;
+    double curvature_per_mm;  // positive: turns left
+    double length_mm;
+    std::uint32_t contour;
+    bool is_circle = false;
+    bool is_wide = false;  // more than half a circle
+
+    Carrier carrier() const { return {start, start_tangent, curvature_per_mm}; }
+    double distance_mm(const Point2& point) const;
+};
+
+// Calls take(before, piece) for every piece of closed contours, in their order, with the one that it follows. A full
+// circle follows itself.
+template <class Take>
+void for_neighbours(const std::vector<BoundaryPiece>& pieces, Take take) {
+    for (std::size_t first = 0; first < pieces.size();) {
+        std::size_t last = first;
+        while (last + 1 < pieces.size() && pieces[last + 1].contour == pieces[first].contour) {
+            ++last;
+        }
+        for (std::size_t i = first; i <= last; ++i)
+            take(pieces[i == first ? last : i - 1], pieces[i]);
+        first = last + 1;
+    }
+}
+
+class Boundary {
+public:
+    explicit Boundary(Region region);
+
+    // In the order of the contours. Segments without length are left out.
+    const std::vector<BoundaryPiece>& pieces() const { return pieces_; }
+    double distance_mm(const Point2& point, double within_mm) const;
+    int winding(const Point2& point) const;
+
+private:
+    std::vector<BoundaryPiece> pieces_;
+    region::BoxTree tree_;
+};
+
+}  // namespace lyr

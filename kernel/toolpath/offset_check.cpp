@@ -1,0 +1,202 @@
+// Areas. Outwards by d the offset is the Minkowski sum of the region with a disc, so its area is at least
+// (sqrt(A) + d sqrt(pi))^2; inwards, the region holds the sum of the offset with a disc, so that bounds the offset from
+// above. On the other side, what is added or taken away is covered by what lies within d beside each segment and around
+// each corner: d L + d^2 sweep / 2 beside an arc that turns away, and d^2 turn / 2 around a corner.
+
+#include "kernel/toolpath/offset_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "kernel/geometry/tolerance.h"
+#include "kernel/toolpath/boundary.h"
+#include "kernel/toolpath/offset_curve.h"
+
+namespace lyr {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+// In allowed_mm. A point is missed if it is so deep in the offset; it is looked for twice as deep, so that its own
+// segment does not hide it. The result's boundary may be off by one, and what is wider than two is no sliver.
+constexpr double depth_share = 2;
+
+// In the tolerance. So far beside the middle of a segment, windings are counted if no other part of the boundary is as
+// near.
+constexpr double probe_share = 2;
+constexpr double clear_share = 1.5;
+
+Vector2 right_of(const Vector2& direction) {
+    return {direction.y(), -direction.x()};
+}
+
+double area_mm2(Region region) {
+    double area = 0;
+    for (const Contour& contour : region) area += area_mm2(contour);
+    return area;
+}
+
+class Check {
+public:
+    Check(Region result, Region region, const OffsetRequest& request)
+        : request_(request),
+          outwards_(request.distance_mm > 0),
+          distance_mm_(std::abs(request.distance_mm)),
+          mitred_mm_(request.corner == Corner::mitre ? request.mitre_limit * distance_mm_
+                                                     : distance_mm_),
+          slack_mm_(request.allowed_mm + resolution_mm),
+          source_contours_(region),
+          contours_(result),
+          source_(region),
+          result_(result) {}
+
+    std::optional<OffsetFault> fault() const {
+        if (auto found = wrong_distance()) return found;
+        if (auto found = wrong_side()) return found;
+        if (auto found = wrong_area()) return found;
+        return missing();
+    }
+
+private:
+    using Fault = std::optional<OffsetFault>;
+    using Kind = OffsetFault::Kind;
+
+    // Towards the offset.
+    Vector2 across(const Vector2& tangent) const {
+        return outwards_ ? right_of(tangent) : Vector2(-right_of(tangent));
+    }
+
+    Fault wrong_distance_at(const Point2& point) const;
+    Fault wrong_distance() const;
+    Fault wrong_side() const;
+    double covered_beside(const BoundaryPiece& piece) const;
+    double covered_around(const BoundaryPiece& before, const BoundaryPiece& after) const;
+    double covered_mm2() const;
+    Fault wrong_area() const;
+    Fault missing_beside(const Point2& place, const Vector2& towards) const;
+    Fault missing() const;
+
+    const OffsetRequest& request_;
+    bool outwards_;
+    double distance_mm_, mitred_mm_, slack_mm_;
+    Region source_contours_, contours_;
+    Boundary source_, result_;
+};
+
+Check::Fault Check::wrong_distance_at(const Point2& point) const {
+    const double far_mm = mitred_mm_ + slack_mm_;
+    const double distance = source_.distance_mm(point, 2 * far_mm);
+    // Not "less or more": what is no number is wrong.
+    if (distance >= distance_mm_ - slack_mm_ && distance <= far_mm) return std::nullopt;
+    return OffsetFault{Kind::distance, point, distance - distance_mm_};
+}
+
+Check::Fault Check::wrong_distance() const {
+    for (const BoundaryPiece& piece : result_.pieces()) {
+        if (!piece.is_circle) {
+            if (auto found = wrong_distance_at(piece.start)) return found;
+        }
+        if (auto found = wrong_distance_at(piece.middle)) return found;
+    }
+    return std::nullopt;
+}
+
+// A contour that is nowhere near the region's boundary is all on one side of it, and one that no other crosses has the
+// material on its left everywhere: once a contour is enough.
+Check::Fault Check::wrong_side() const {
+    std::vector<bool> seen(contours_.size(), false);
+    const double probe_mm = probe_share * slack_mm_, clear_mm = clear_share * slack_mm_;
+    for (const BoundaryPiece& piece : result_.pieces()) {
+        if (seen[piece.contour]) continue;
+        const Vector2 right = probe_mm * right_of(piece.middle_tangent);
+        const Point2 inside = piece.middle - right, outside = piece.middle + right;
+        if (result_.distance_mm(inside, probe_mm) < clear_mm ||
+            result_.distance_mm(outside, probe_mm) < clear_mm) {
+            continue;
+        }
+        seen[piece.contour] = true;
+        if (result_.winding(inside) != 1 || result_.winding(outside) != 0) {
+            return OffsetFault{Kind::nesting, piece.middle};
+        }
+        if ((source_.winding(piece.middle) > 0) == outwards_) {
+            return OffsetFault{Kind::side, piece.middle};
+        }
+    }
+    return std::nullopt;
+}
+
+double Check::covered_beside(const BoundaryPiece& piece) const {
+    const double turned = outwards_ ? piece.curvature_per_mm : -piece.curvature_per_mm;
+    // Up to the centre of an arc that turns towards the offset.
+    const double depth_mm = std::min(distance_mm_, turned < 0 ? -1 / turned : distance_mm_);
+    return piece.length_mm * depth_mm * (1 + turned * depth_mm / 2);
+}
+
+double Check::covered_around(const BoundaryPiece& before, const BoundaryPiece& after) const {
+    const Vector2 &from = before.end_tangent, &to = after.start_tangent;
+    double turn = std::atan2(cross(from, to), from.dot(to));
+    // A cusp may be taken for either.
+    const bool is_cusp = std::abs(turn) > pi - cusp_rad;
+    if (!is_cusp && (turn > 0) != outwards_) return 0;
+    turn = is_cusp ? pi + cusp_rad : std::abs(turn);
+    const bool mitred =
+        mitred_mm_ * std::cos(turn / 2) >= distance_mm_ && turn < pi && mitred_mm_ > distance_mm_;
+    return distance_mm_ * distance_mm_ * (mitred ? std::tan(turn / 2) : turn / 2);
+}
+
+double Check::covered_mm2() const {
+    double covered = 0;
+    for_neighbours(source_.pieces(), [&](const BoundaryPiece& before, const BoundaryPiece& piece) {
+        covered += covered_beside(piece);
+        if (!piece.is_circle) covered += covered_around(before, piece);
+    });
+    return covered;
+}
+
+Check::Fault Check::wrong_area() const {
+    double length = 0;
+    for (const BoundaryPiece& piece : source_.pieces()) length += piece.length_mm;
+    for (const BoundaryPiece& piece : result_.pieces()) length += piece.length_mm;
+    const double slack_mm2 = slack_mm_ * length;
+    const double area = area_mm2(contours_), source = std::max(0.0, area_mm2(source_contours_));
+    const double disc = std::sqrt(pi) * distance_mm_, root = std::sqrt(source);
+    const double covered = covered_mm2();
+    const double least = outwards_ ? (root + disc) * (root + disc) : source - covered;
+    const double inner = std::max(0.0, root - disc);
+    const double most = outwards_ ? source + covered : inner * inner;
+    if (area >= least - slack_mm2 && area <= most + slack_mm2) return std::nullopt;
+    return OffsetFault{Kind::area, contours_.empty() ? Point2::Zero() : start_of(contours_[0])};
+}
+
+Check::Fault Check::missing_beside(const Point2& place, const Vector2& towards) const {
+    const double depth_mm = depth_share * slack_mm_;
+    const Point2 point = place + (mitred_mm_ + 2 * depth_mm) * towards;
+    // It may be beyond another part of the boundary, on its own side or not.
+    if (source_.distance_mm(point, mitred_mm_ + 2 * depth_mm) < mitred_mm_ + depth_mm ||
+        (source_.winding(point) > 0) == outwards_) {
+        return std::nullopt;
+    }
+    // Outwards, the other side of the boundary is what may be missing: a hole.
+    if (result_.winding(point) == (outwards_ ? 0 : 1)) return std::nullopt;
+    return OffsetFault{Kind::incomplete, point};
+}
+
+Check::Fault Check::missing() const {
+    Fault found;
+    for_neighbours(source_.pieces(), [&](const BoundaryPiece& before, const BoundaryPiece& piece) {
+        if (!found) found = missing_beside(piece.middle, across(piece.middle_tangent));
+        const Vector2 middle = before.end_tangent + piece.start_tangent;
+        if (found || piece.is_circle || middle.norm() < cusp_rad) return;
+        found = missing_beside(piece.start, across(middle.normalized()));
+    });
+    return found;
+}
+
+}  // namespace
+
+std::optional<OffsetFault> fault_of(Region result, Region region, const OffsetRequest& request) {
+    return Check(result, region, request).fault();
+}
+
+}  // namespace lyr
