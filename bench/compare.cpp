@@ -14,6 +14,7 @@
 #include "bench/reading.h"
 #include "bench/scaling.h"
 #include "bench/sections.h"
+#include "bench/step_files.h"
 #include "bench/table.h"
 
 namespace {

@@ -4,7 +4,6 @@
 #include "bench/reading.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -104,19 +103,6 @@ void print_notes(const Sides& sides, std::size_t files) {
 }
 
 }  // namespace
-
-std::vector<std::string> step_files(const std::string& path) {
-    if (!std::filesystem::is_directory(path)) return {path};
-    std::vector<std::string> files;
-    for (const auto& entry : std::filesystem::directory_iterator(path)) {
-        std::string extension = entry.path().extension();
-        std::transform(extension.begin(), extension.end(), extension.begin(),
-                       [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-        if (extension == ".step" || extension == ".stp") files.push_back(entry.path());
-    }
-    std::sort(files.begin(), files.end());
-    return files;
-}
 
 void compare_reading(const std::vector<std::string>& paths, Requirements& requirements) {
     Table table{

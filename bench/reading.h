@@ -9,9 +9,6 @@
 
 namespace lyr::bench {
 
-// The STEP files in a folder (not below it), sorted; a path to a file gives that file.
-std::vector<std::string> step_files(const std::string& path);
-
 // Prints the table, file by file if they are few. MB are 10^6 bytes.
 void compare_reading(const std::vector<std::string>& paths, Requirements& requirements);
 
