@@ -12,8 +12,8 @@
 #include <memory>
 #include <set>
 
+#include "base/nearest_name.h"
 #include "target/config/keys.h"
-#include "target/config/nearest_name.h"
 
 namespace lyr::config {
 namespace {

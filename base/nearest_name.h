@@ -11,8 +11,8 @@
 #include <string>
 #include <string_view>
 
-namespace lyr::config {
+namespace lyr {
 
 std::string nearest_name(std::string_view name, std::span<const std::string> known);
 
-}  // namespace lyr::config
+}  // namespace lyr

@@ -1,11 +1,11 @@
 // Optimal string alignment distance, three rows of the table at a time.
 
-#include "target/config/nearest_name.h"
+#include "base/nearest_name.h"
 
 #include <algorithm>
 #include <vector>
 
-namespace lyr::config {
+namespace lyr {
 namespace {
 
 // Longer names are not worth the quadratic time; no known one comes near.
@@ -43,4 +43,4 @@ std::string nearest_name(std::string_view name, std::span<const std::string> kno
     return nearest;
 }
 
-}  // namespace lyr::config
+}  // namespace lyr

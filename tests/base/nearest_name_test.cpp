@@ -1,12 +1,12 @@
-// Contract of target/config/nearest_name.h, by number.
+// Contract of base/nearest_name.h, by number.
 
-#include "target/config/nearest_name.h"
+#include "base/nearest_name.h"
 
 #include <doctest/doctest.h>
 
 #include <vector>
 
-using lyr::config::nearest_name;
+using lyr::nearest_name;
 
 static const std::vector<std::string> known{"steps_per_mm", "step", "invert", "range_mm", "x", "y"};
 
