@@ -43,10 +43,10 @@ struct Nozzle {
 struct Filament {
     std::string material = "PLA";
     double diameter_mm = 1.75;
-    double density_g_cm3 = 1.24;
-    double cost_per_kg = 0;  // in the user's currency; 0: not stated
-    double max_volumetric_speed_mm3_s = 15;
-    double flow = 1;  // extrusion multiplier
+    double density_g_cm3 = 1.24;             // 0: not stated
+    double cost_per_kg = 0;                  // in the user's currency; 0: not stated
+    double max_volumetric_speed_mm3_s = 15;  // 0: no limit
+    double flow = 1;                         // extrusion multiplier
     bool operator==(const Filament&) const = default;
 };
 
