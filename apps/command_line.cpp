@@ -89,19 +89,6 @@ Result<bool> parse(CLI::App& app, int argc, char** argv) {
     return false;
 }
 
-// Adds an option whose value `take` reads; what it cannot read, it answers with what was expected.
-CLI::Option* add_text(CLI::App& app, const std::string& option,
-                      std::function<std::optional<std::string>(const std::string&)> take,
-                      const std::string& text) {
-    const std::string name = option.substr(option.find(',') + 1);
-    const auto read = [name, take = std::move(take)](const std::string& value) {
-        if (const auto expected = take(value))
-            throw CLI::ValidationError(name,
-                                       "expected " + *expected + ", found " + in_quotes(value));
-    };
-    return app.add_option_function<std::string>(option, read, text);
-}
-
 std::string limits_of(const NumberRange& range) {
     std::string text = shortest(range.low) + " to " + shortest(range.high);
     if (*range.unit != '\0') text += std::string(" ") + range.unit;
@@ -176,6 +163,22 @@ void show(const Program& program, const Diagnostics& diagnostics) {
                      diagnostics.size() - shown.size());
 }
 
+CLI::Option* add_text(CLI::App& app, const std::string& option, const char* shape, TakeText take,
+                      const std::string& text) {
+    const std::string name = option.substr(option.find(',') + 1);
+    const auto read = [name, take = std::move(take)](const std::string& value) {
+        if (const auto expected = take(value))
+            throw CLI::ValidationError(name,
+                                       "expected " + *expected + ", found " + in_quotes(value));
+    };
+    return app.add_option_function<std::string>(option, read, text)->option_text(shape);
+}
+
+CLI::Option* add_texts(CLI::App& app, const std::string& option, const char* shape, TakeText take,
+                       const std::string& text) {
+    return add_text(app, option, shape, std::move(take), text)->trigger_on_parse();
+}
+
 CLI::Option* add_file(CLI::App& app, const std::string& option, std::string& path,
                       const std::string& text) {
     const auto take = [&path](const std::string& value) -> std::optional<std::string> {
@@ -183,7 +186,7 @@ CLI::Option* add_file(CLI::App& app, const std::string& option, std::string& pat
         path = value;
         return std::nullopt;
     };
-    return add_text(app, option, take, text)->option_text("FILE");
+    return add_text(app, option, "FILE", take, text);
 }
 
 void add_flag(CLI::App& app, const std::string& option, bool& flag, const std::string& text) {
@@ -199,7 +202,8 @@ void add_numbers(CLI::App& app, const std::string& option, const char* shape,
     };
     std::string shown = std::string(shape) + "  [";
     for (const double& value : values) shown += (&value == &values[0] ? "" : ",") + shortest(value);
-    add_text(app, option, take, text + "; " + limits_of(range))->option_text(shown + ']');
+    shown += ']';
+    add_text(app, option, shown.c_str(), take, text + "; " + limits_of(range));
 }
 
 void add_count(CLI::App& app, const std::string& option, const char* shape, std::uint32_t& value,
@@ -217,7 +221,7 @@ void add_count(CLI::App& app, const std::string& option, const char* shape, std:
             expected += " to " + std::to_string(range.high);
         return expected;
     };
-    add_text(app, option, take, text)->option_text(shape);
+    add_text(app, option, shape, take, text);
 }
 
 }  // namespace lyr::command_line

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -39,6 +40,14 @@ void show(const Program& program, const Diagnostics& diagnostics);
 // The name of a file; `path` is left as it is where the option is not given.
 CLI::Option* add_file(CLI::App& app, const std::string& option, std::string& path,
                       const std::string& text);
+
+// Any text; an option that is given more than once calls `take` each time, in the order of the command line. What it
+// refuses, it answers with what was expected: "KEY=VALUE".
+using TakeText = std::function<std::optional<std::string>(const std::string&)>;
+CLI::Option* add_text(CLI::App& app, const std::string& option, const char* shape, TakeText take,
+                      const std::string& text);
+CLI::Option* add_texts(CLI::App& app, const std::string& option, const char* shape, TakeText take,
+                       const std::string& text);
 
 void add_flag(CLI::App& app, const std::string& option, bool& flag, const std::string& text);
 

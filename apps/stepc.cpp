@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,8 @@
 #include "apps/signal_watch.h"
 #include "base/read_text.h"
 #include "base/text.h"
+#include "profile/built_in.h"
+#include "profile/resolve.h"
 #include "slicer/slicer.h"
 
 namespace {
@@ -23,10 +26,17 @@ using namespace lyr::command_line;
 struct Arguments {
     std::string step_path, lyr_path, heights_path, report_path;
     std::array<double, 3> up{0, 0, 1};
-    std::array<double, 2> bed_position_mm{0, 0};
+    profile::Request settings;
+    bool print_config = false;
     slicer::Options options;
 
     bool sections() const { return !heights_path.empty(); }
+    // A profile that is no stream is looked for by its name; which files are read shows then.
+    std::vector<NamedFile> inputs() const {
+        return {{"the part", step_path},
+                {"the heights", heights_path},
+                {"the profile", settings.profile == "-" ? "-" : ""}};
+    }
     std::vector<NamedFile> outputs() const {
         return {{"the print", lyr_path}, {"the report", report_path}};
     }
@@ -37,6 +47,8 @@ constexpr Program program{
     "Examples:\n"
     "  stepc part.step -o part.lyr                        slice at 0.2 mm\n"
     "  stepc part.step -o part.lyr --layer-height 0.1     finer\n"
+    "  stepc part.step --profile petg --set perimeters.count=4   another material, more walls\n"
+    "  stepc --profile petg --print-config                all settings, and where they come from\n"
     "  stepc part.step -o part.lyr --up 0,-1,0            print it lying on another side\n"
     "  stepc part.step --section-at z.txt --report s.jsonl   areas at heights of your own\n"
     "  stepc part.step -o - | lyrview - --info            into a pipe\n"
@@ -49,15 +61,12 @@ constexpr Program program{
     "on\n"
     "request.\n"};
 
-// As far as a printer's axes may reach (docs/configuration.md).
-constexpr NumberRange bed_mm{-10'000, 10'000, "mm"};
 // Only the direction counts; no vector that means one is longer.
 constexpr NumberRange direction{-1'000, 1'000, ""};
 
 void add_files(CLI::App& app, Arguments& arguments) {
     add_file(app, "part", arguments.step_path,
-             "STEP file (ISO 10303-21; AP203, AP214, AP242); -: standard input")
-        ->required();
+             "STEP file (ISO 10303-21; AP203, AP214, AP242); -: standard input");
     add_file(app, "-o,--output", arguments.lyr_path,
              "The print to write; -: standard output; without it, the part's name with .lyr");
     add_file(app, "--section-at", arguments.heights_path,
@@ -68,31 +77,46 @@ void add_files(CLI::App& app, Arguments& arguments) {
              "standard output");
 }
 
+// An option that is short for --set of one key. The key's own rules say what it takes.
+void add_shorthand(CLI::App& app, Arguments& arguments, const std::string& option,
+                   const char* shape, const std::string& key, const std::string& text) {
+    const auto take = [&arguments, option, key](const std::string& value) {
+        arguments.settings.settings.push_back({key, value, option});
+        return std::optional<std::string>();
+    };
+    add_text(app, option, shape, take, text + "; short for --set " + key + "=" + shape);
+}
+
+void add_settings(CLI::App& app, Arguments& arguments) {
+    std::string built_in;
+    for (const std::string& name : profile::built_in_names())
+        built_in += (built_in.empty() ? "" : ", ") + name;
+    add_file(app, "--profile", arguments.settings.profile,
+             "Settings of a material: a TOML file or a built-in profile (" + built_in +
+                 "); -: standard input");
+    const auto take = [&arguments](const std::string& text) -> std::optional<std::string> {
+        auto setting = profile::parse_setting(text, "--set");
+        if (!setting) return "KEY=VALUE";
+        arguments.settings.settings.push_back(std::move(*setting));
+        return std::nullopt;
+    };
+    add_texts(app, "--set", "KEY=VALUE ...", take,
+              "A setting, whatever the profile says; may be given any number of times");
+    add_flag(app, "--print-config", arguments.print_config,
+             "Show all settings with their origins, as a profile, and do no more");
+    add_shorthand(app, arguments, "--layer-height", "MM", "layer.height", "Thickness of a layer");
+    add_shorthand(app, arguments, "--tolerance", "MM", "slicing.tolerance",
+                  "Greatest distance of the printed contour from the exact section");
+    add_shorthand(app, arguments, "--at", "X,Y", "plate.at",
+                  "Where on the bed the part's corner lies");
+}
+
 void add_options(CLI::App& app, Arguments& arguments) {
     slicer::Options& options = arguments.options;
-    const auto add_number = [&app](const char* option, const char* shape, double& value,
-                                   const NumberRange& range, const char* text) {
-        add_numbers(app, option, shape, {&value, 1}, range, text);
-    };
     add_files(app, arguments);
-    add_number("--layer-height", "MM", options.layer_height_mm, {0.001, 10, "mm"},
-               "Thickness of a layer");
-    add_number("--tolerance", "MM", options.tolerance.total_mm, {1e-5, 1, "mm"},
-               "Greatest distance of the printed contour from the exact section");
+    add_settings(app, arguments);
     add_numbers(app, "--up", "X,Y,Z", arguments.up, direction,
                 "Build direction in the model's coordinates, of any length");
-    add_numbers(app, "--at", "X,Y", arguments.bed_position_mm, bed_mm,
-                "Where on the bed the part's corner lies");
-    add_number("--line-width", "MM", options.line_width_mm, {0.01, 10, "mm"},
-               "Width of an extruded line");
-    add_number("--wall-speed", "MM/S", options.wall_speed_mm_s, {0.1, 2000, "mm/s"},
-               "Speed along contours");
-    add_number("--infill-speed", "MM/S", options.infill_speed_mm_s, {0.1, 2000, "mm/s"},
-               "Speed of the fill");
-    add_number("--nozzle-temp", "DEG_C", options.nozzle_temp_c, {0, 500, "deg C"},
-               "Nozzle temperature, 0: off");
-    add_number("--bed-temp", "DEG_C", options.bed_temp_c, {0, 200, "deg C"},
-               "Bed temperature, 0: off");
     add_flag(app, "--allow-open", options.allow_open,
              "Leave out contours that do not close instead of stopping");
     add_flag(app, "--strict", options.strict,
@@ -124,8 +148,8 @@ std::string summary_text(const Arguments& arguments, const slicer::Summary& summ
         const auto size = summary.box.sizes();
         std::snprintf(line, sizeof line,
                       "%.3f x %.3f x %.3f mm at %g mm a layer, tolerance %g mm\n", size.x(),
-                      size.y(), size.z(), arguments.options.layer_height_mm,
-                      arguments.options.tolerance.total_mm);
+                      size.y(), size.z(), arguments.options.profile.layer.height_mm,
+                      arguments.options.tolerance().total_mm);
         text += line + output_name(arguments.lyr_path) + ": " + counted(summary.bytes, "byte");
     }
     std::snprintf(line, sizeof line, ", %.2f s, ", time_s);
@@ -161,9 +185,9 @@ Result<slicer::Summary> slice(const Arguments& arguments, ProgressLine& line,
 Status complete(Arguments& arguments) {
     const Vector3 up(arguments.up.data());
     const double longest = up.cwiseAbs().maxCoeff();
+    if (arguments.step_path.empty()) return usage("part is required");
     if (!(longest > 0)) return usage("--up: 0,0,0 is no direction");
     arguments.options.up = up / longest;  // so that no square of a component underflows
-    arguments.options.bed_position_mm = Point2(arguments.bed_position_mm.data());
     if (arguments.sections() && arguments.report_path.empty())
         return usage("--section-at needs --report FILE");
     if (arguments.sections() && !arguments.lyr_path.empty())
@@ -172,12 +196,26 @@ Status complete(Arguments& arguments) {
         if (arguments.step_path == "-") return usage("a part from standard input needs -o FILE");
         arguments.lyr_path = std::filesystem::path(arguments.step_path).replace_extension(".lyr");
     }
-    return check_apart({{"the part", arguments.step_path}, {"the heights", arguments.heights_path}},
-                       arguments.outputs());
+    return check_apart(arguments.inputs(), arguments.outputs());
+}
+
+Status take_settings(Arguments& arguments, const profile::Resolved& settings) {
+    for (const std::string& file : settings.files)
+        if (const Status apart = check_apart({{"the profile", file}}, arguments.outputs()); !apart)
+            return apart;
+    arguments.options.profile = settings.profile;
+    arguments.options.profile_name = settings.name;
+    arguments.options.configuration = to_toml(settings, profile::Folders::left_out);
+    return Done{};
 }
 
 Status work(Arguments& arguments) {
-    if (const Status completed = complete(arguments); !completed) return completed;
+    if (!arguments.print_config)
+        if (const Status completed = complete(arguments); !completed) return completed;
+    const auto settings = profile::resolve(arguments.settings);
+    if (!settings) return settings.error();
+    if (arguments.print_config) return tell(to_toml(*settings));
+    if (const Status taken = take_settings(arguments, *settings); !taken) return taken;
     const SignalWatch watch(program.name);
     const auto begin = std::chrono::steady_clock::now();
     ProgressLine line;

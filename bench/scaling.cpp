@@ -97,7 +97,7 @@ Status compare_scaling(Requirements& requirements) {
         if (!model) return model.error();
         std::optional<Cutter> cutter;
         const Times preparation =
-            repeat(runs, enough_s, [&] { cutter.emplace(*model, options.tolerance); });
+            repeat(runs, enough_s, [&] { cutter.emplace(*model, options.tolerance()); });
         const std::vector<double> all = heights(storeys);
         if (Status right = check(*cutter, all, file->path()); !right) return right;
 

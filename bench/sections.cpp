@@ -112,8 +112,8 @@ Result<Cut> cut(const PartToCut& part) {
     Diagnostics found;
     const auto model = slicer::load(part.path, options, found);
     if (!model) return model.error();
-    const auto heights = heights_of_layers(*model, options.tolerance, part.layer_height_mm);
-    Cut cut{model->faces.size(), our_times(*model, options.tolerance, heights)};
+    const auto heights = heights_of_layers(*model, options.tolerance(), part.layer_height_mm);
+    Cut cut{model->faces.size(), our_times(*model, options.tolerance(), heights)};
     for (const slicer::SectionFigures& figures : cut.times.figures) {
         if (figures.open == 0) continue;
         return Diagnostic{Severity::error,

@@ -22,7 +22,7 @@ constexpr Unit mm_s2{"mm/s2", mm_s2_also}, mm2{"mm2", mm2_also}, mm3_s{"mm3/s", 
 constexpr Unit degrees{"deg", degrees_also}, celsius{"deg C", celsius_also};
 constexpr Unit g_cm3{"g/cm3", g_cm3_also};
 
-constexpr Range height_mm{0.001, 10}, width_mm{0.01, 10}, angle_deg{-360, 360};
+constexpr Range height_mm{0.001, 10}, width_mm{0.01, 20}, angle_deg{-360, 360};
 constexpr Range speed_mm_s{0.1, 2000}, acceleration_mm_s2{0, 1e6};
 constexpr Range part{0, 1}, flow{0.1, 3};
 constexpr Range heat_c{0, 500}, bed_c{0, 200};

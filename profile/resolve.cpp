@@ -115,6 +115,7 @@ Status Resolver::base(const Source& source, const Statement& statement) {
 Status Resolver::file(const Source& source) {
     const auto statements = statements_of(source.text, source.shown);
     if (!statements) return statements.error();
+    if (!source.built_in) resolved_.files.push_back(source.path);
     open_.push_back(&source);
     for (const Statement& statement : *statements) {
         if (statement.path != inherits) continue;
@@ -159,12 +160,11 @@ Status check_options(const std::vector<Setting>& settings) {
 
 }  // namespace
 
-Result<Setting> parse_setting(const std::string& text, const std::string& option) {
+std::optional<Setting> parse_setting(std::string_view text, const std::string& option) {
     const std::size_t equals = text.find('=');
-    const std::string key(trimmed(std::string_view(text).substr(0, equals)));
-    if (equals == std::string::npos || key.empty())
-        return usage_error(option + ": expected KEY=VALUE, found " + in_quotes(text));
-    return Setting{key, std::string(trimmed(std::string_view(text).substr(equals + 1))), option};
+    const std::string key(trimmed(text.substr(0, equals)));
+    if (equals == std::string_view::npos || key.empty()) return std::nullopt;
+    return Setting{key, std::string(trimmed(text.substr(equals + 1))), option};
 }
 
 Result<Resolved> resolve(const Request& request) {

@@ -15,7 +15,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/diagnostic.h"
@@ -28,8 +30,8 @@ struct Setting {
     std::string key, value, option;
 };
 
-// "layer.height=0.2", with or without spaces around the =. Errors (usage): no =, no key.
-Result<Setting> parse_setting(const std::string& text, const std::string& option);
+// "layer.height=0.2", with or without spaces around the =; none without a = or a key.
+std::optional<Setting> parse_setting(std::string_view text, const std::string& option);
 
 struct Request {
     std::string
@@ -48,7 +50,8 @@ struct Resolved {
     Profile profile;
     std::string
         name;  // of the profile that was asked for: "abs"; empty: none, or from standard input
-    std::vector<Origin> origins;  // of the keys, in the order of keys()
+    std::vector<Origin> origins;     // of the keys, in the order of keys()
+    std::vector<std::string> files;  // that were read; "-": standard input
 };
 
 Result<Resolved> resolve(const Request& request);

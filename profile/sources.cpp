@@ -26,8 +26,10 @@ std::optional<Source> built_in(const std::string& name) {
     for (const BuiltIn& file : built_ins()) {
         if (file.name != without_extension(name)) continue;
         const std::string own(file.name);
-        return Source{
-            own + std::string(extension), own, std::string(file.text), {}, "built-in " + own, true};
+        Source source{.shown = own + std::string(extension), .name = own, .built_in = true};
+        source.text = file.text;
+        source.identity = "built-in " + own;
+        return source;
     }
     return std::nullopt;
 }
@@ -49,15 +51,17 @@ Result<Source> from_file(const std::string& path, const std::string& name) {
         if (path != "-" && !fs::exists(path, failed)) error.message += known_names(name);
         return error;
     }
-    if (path == "-") return Source{standard_input_name, {}, std::move(*text), {}, "-", false};
+    Source source{.shown = path, .path = path, .text = std::move(*text), .identity = path};
+    if (path == "-") {
+        source.shown = standard_input_name;
+        return source;
+    }
     std::error_code failed;
     const fs::path place = fs::weakly_canonical(path, failed);
-    return Source{path,
-                  without_extension(fs::path(path).filename().string()),
-                  std::move(*text),
-                  fs::path(path).parent_path().string(),
-                  failed ? path : place.string(),
-                  false};
+    if (!failed) source.identity = place.string();
+    source.name = without_extension(fs::path(path).filename().string());
+    source.folder = fs::path(path).parent_path().string();
+    return source;
 }
 
 Result<Source> find(const std::string& name, const std::string& folder) {

@@ -10,12 +10,12 @@
 namespace lyr::profile {
 
 struct Source {
-    std::string shown;  // what messages call it: "profiles/abs.toml"
-    std::string name;   // "abs"; empty for standard input
-    std::string text;
-    std::string
-        folder;  // in which the names that it gives are looked for; empty: where the program was started
-    std::string identity;  // the same for the same text, whatever it was called
+    std::string shown{};  // what messages call it: "profiles/abs.toml"
+    std::string path{};   // the file; "-": standard input; empty: built in
+    std::string name{};   // "abs"; empty for standard input
+    std::string text{};
+    std::string folder{};  // to which the names that it gives are relative; empty: the current one
+    std::string identity{};  // the same for the same text, whatever it was called
     bool built_in = false;
 };
 

@@ -97,11 +97,11 @@ Status refuse_defects(const Diagnostics& found) {
 }  // namespace
 
 Status mend(Model& model, const Options& options, Diagnostics& found) {
-    heal(model, reach_for(model, options.tolerance), found);
+    heal(model, reach_for(model, options.tolerance()), found);
     if (Status settled = settle_surfaces(model, options, found); !settled) return settled;
-    report_deviations(model,
-                      std::max({model.uncertainty_mm, resolution_mm, options.tolerance.trace_mm()}),
-                      found);
+    report_deviations(
+        model, std::max({model.uncertainty_mm, resolution_mm, options.tolerance().trace_mm()}),
+        found);
     const Diagnostics remaining = validate(model);
     found.insert(found.end(), remaining.begin(), remaining.end());
     return options.strict ? refuse_defects(found) : Done{};

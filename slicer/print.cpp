@@ -85,18 +85,19 @@ void encode_hatch(const Hatch& hatch, format::LayerEncoder& layer) {
 
 format::LayerState layer_state(std::size_t index, Region region, const Options& options) {
     format::LayerState state;
-    state.z_mm = static_cast<double>(index + 1) * options.layer_height_mm;
-    state.height_mm = options.layer_height_mm;
+    state.z_mm = static_cast<double>(index + 1) * options.profile.layer.height_mm;
+    state.height_mm = options.profile.layer.height_mm;
     if (!region.empty()) {
         const Point2 start = start_of(region.front());
         state.start_x_mm = start.x();
         state.start_y_mm = start.y();
     }
-    state.travel_speed_mm_s = options.travel_speed_mm_s;
-    state.temperatures.push_back(
-        {{.kind = format::HeaterKind::bed, .tool = 0}, options.bed_temp_c});
-    state.temperatures.push_back(
-        {{.kind = format::HeaterKind::tool, .tool = 0}, options.nozzle_temp_c});
+    state.travel_speed_mm_s = options.profile.speed.travel_mm_s;
+    const profile::Temperature& heat = options.profile.temperature;
+    state.temperatures.push_back({{.kind = format::HeaterKind::bed, .tool = 0},
+                                  index == 0 ? heat.bed_first_layer_c : heat.bed_c});
+    state.temperatures.push_back({{.kind = format::HeaterKind::tool, .tool = 0},
+                                  index == 0 ? heat.nozzle_first_layer_c : heat.nozzle_c});
     return state;
 }
 
@@ -104,16 +105,16 @@ Result<format::EncodedLayer> encode(std::size_t index, Region region, const Opti
                                     format::Quantum quantum) {
     format::LayerEncoder layer(quantum, layer_state(index, region, options));
     layer.begin_path({.role = format::Role::outer_wall,
-                      .width_mm = options.line_width_mm,
-                      .height_mm = options.layer_height_mm,
-                      .speed_mm_s = options.wall_speed_mm_s});
+                      .width_mm = options.profile.perimeters.width_mm,
+                      .height_mm = options.profile.layer.height_mm,
+                      .speed_mm_s = options.profile.speed.outer_wall_mm_s});
     for (const Contour& contour : region) encode_contour(contour, layer);
     layer.begin_path({.role = format::Role::solid_infill,
-                      .width_mm = options.line_width_mm,
-                      .height_mm = options.layer_height_mm,
-                      .speed_mm_s = options.infill_speed_mm_s});
+                      .width_mm = options.profile.skin.width_mm,
+                      .height_mm = options.profile.layer.height_mm,
+                      .speed_mm_s = options.profile.speed.solid_infill_mm_s});
     const double angle = (index % 2 == 0 ? 1 : 3) * std::numbers::pi / 4;
-    encode_hatch(hatch(region, angle, options.line_width_mm), layer);
+    encode_hatch(hatch(region, angle, options.profile.skin.width_mm), layer);
     return layer.finish();
 }
 
@@ -168,7 +169,7 @@ MadeLayer make_layer(const Cutter& cutter, std::size_t index, double middle_mm,
     const Location where{.layer = static_cast<int>(index + 1), .z_mm = middle_mm};
     Section section = cutter.cut(middle_mm);
     for (Diagnostic& found : section.diagnostics) found.where.layer = static_cast<int>(index + 1);
-    const RegionResult region = region_of(section, options.tolerance);
+    const RegionResult region = region_of(section, options.tolerance());
     MadeLayer made{.section = figures_of(section),
                    .printed = figures_of(region.contours),
                    .united = region.changed,
@@ -221,9 +222,9 @@ Status check_size(const Eigen::AlignedBox3d& box, double layer_height_mm) {
 }
 
 Model on_bed(Model model, const Options& options, Eigen::AlignedBox3d& box) {
-    box = bounding_box(model, options.tolerance);
-    const Vector3 move(options.bed_position_mm.x() - box.min().x(),
-                       options.bed_position_mm.y() - box.min().y(), -box.min().z());
+    box = bounding_box(model, options.tolerance());
+    const Vector3 move(options.profile.plate.at_mm[0] - box.min().x(),
+                       options.profile.plate.at_mm[1] - box.min().y(), -box.min().z());
     box.translate(move);
     return transformed(std::move(model), Eigen::Affine3d(Eigen::Translation3d(move)));
 }
@@ -232,7 +233,12 @@ format::Metadata metadata(const std::string& source_name, const Options& options
     format::Metadata data;
     data.generator = "stepc " LYR_VERSION;
     data.source_name = source_name;
-    data.tolerance_mm = options.tolerance.total_mm;
+    data.material = options.profile.filament.material;
+    data.profile = options.profile_name;
+    data.tolerance_mm = options.tolerance().total_mm;
+    data.filament_diameter_mm = options.profile.filament.diameter_mm;
+    data.filament_density_g_cm3 = options.profile.filament.density_g_cm3;
+    data.configuration = options.configuration;
     return data;
 }
 
@@ -243,10 +249,10 @@ Result<Summary> print(Model model, const std::string& source_name, const std::st
                       const Progress& progress, Diagnostics& diagnostics) {
     Summary summary{.solids = model.solids.size(), .faces = model.faces.size()};
     const Model placed = on_bed(std::move(model), options, summary.box);
-    if (Status checked = check_size(summary.box, options.layer_height_mm); !checked)
+    if (Status checked = check_size(summary.box, options.profile.layer.height_mm); !checked)
         return checked.error();
-    const auto middles = layer_middles(summary.box.sizes().z(), options.layer_height_mm);
-    const format::Quantum quantum = quantum_for(options.tolerance);
+    const auto middles = layer_middles(summary.box.sizes().z(), options.profile.layer.height_mm);
+    const format::Quantum quantum = quantum_for(options.tolerance());
     auto writer = format::Writer::create(lyr_path, quantum, metadata(source_name, options));
     if (!writer) return writer.error();
     std::optional<ReplaceFile> report;
@@ -256,7 +262,7 @@ Result<Summary> print(Model model, const std::string& source_name, const std::st
         report.emplace(std::move(*opened));
     }
 
-    const Cutter cutter(placed, options.tolerance);
+    const Cutter cutter(placed, options.tolerance());
     std::optional<Diagnostic> failed;
     in_order(
         middles.size(), thread_count(options),

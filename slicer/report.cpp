@@ -56,7 +56,7 @@ Result<Summary> section_at(const Model& model, const std::vector<double>& height
                            const Progress& progress, Diagnostics& diagnostics) {
     auto report = ReplaceFile::open(report_path);
     if (!report) return report.error();
-    const Cutter cutter(model, options.tolerance);
+    const Cutter cutter(model, options.tolerance());
     Summary summary{.solids = model.solids.size(), .faces = model.faces.size()};
     std::uint32_t open = 0;
     in_order(

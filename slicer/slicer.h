@@ -7,10 +7,10 @@
 // Contract
 //  1. No output appears unless all of it is right: an error leaves the target as it was.
 //  2. The output depends on the input and the options, not on the number of threads.
-//  3. Layers are layer_height thick; layer i is the section at its middle, (i + 1/2) layer_height over the bed, as
+//  3. Layers are `layer.height_mm` thick; layer i is the section at its middle, (i + 1/2) of that over the bed, as
 //     long as that is below the part's top. So a part of a whole number of layers has just as many, and a rest of
 //     less than half a layer is left off, of more than half counts as a layer.
-//  4. On the bed means: lowest point at z = 0, the bounding box's lower left corner at `bed_position_mm`.
+//  4. On the bed means: lowest point at z = 0, the bounding box's lower left corner at `plate.at_mm`.
 //  5. A contour that does not close is an error, unless `allow_open`; then it is left out and reported.
 //  6. Surfaces that close, if need be after sewing, are solids. Those that do not are left out beside solids; alone they
 //     are an error (status geometry), unless `allow_open`.
@@ -27,23 +27,20 @@
 #include "kernel/brep/model.h"
 #include "kernel/geometry/tolerance.h"
 #include "kernel/section/cutter.h"
+#include "profile/profile.h"
 
 namespace lyr::slicer {
 
 struct Options {
-    Tolerance tolerance;
+    lyr::profile::Profile profile;
+    std::string profile_name;   // for the file's metadata, as the configuration
+    std::string configuration;  // all settings as text, verbatim
     Vector3 up = Vector3::UnitZ();
-    double layer_height_mm = 0.2;
-    double line_width_mm = 0.4;
-    Point2 bed_position_mm = Point2::Zero();
-    double wall_speed_mm_s = 50;
-    double infill_speed_mm_s = 100;
-    double travel_speed_mm_s = 150;
-    double nozzle_temp_c = 210;
-    double bed_temp_c = 60;
     bool allow_open = false;
     bool strict = false;   // refuse a model with geometric defects instead of healing it
     unsigned threads = 0;  // 0: as many as there are processors
+
+    Tolerance tolerance() const { return {profile.slicing.tolerance_mm}; }
 };
 
 // Called from the calling thread only, with what is done of how much.

@@ -12,7 +12,7 @@ Folder with_results(const std::string& name) {
     folder.copy("parts/cuboid.step", "p.step");
     folder.write("z", "1\n25.4\n70\n");
     REQUIRE(
-        folder.run("stepc p.step --layer-height 1 -o named.lyr --report named.jsonl\n").status ==
+        folder.run("stepc p.step --layer-height 0.4 -o named.lyr --report named.jsonl\n").status ==
         0);
     REQUIRE(folder.run("stepc p.step --section-at z --report cut.jsonl").status == 0);
     return folder;
@@ -25,16 +25,16 @@ TEST_CASE("stepc: whatever output goes to standard output, the summary goes to s
     const std::string lyr = text_of(folder / "named.lyr"), report = text_of(folder / "named.jsonl");
     for (const std::string name : {"-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"}) {
         CAPTURE(name);
-        const Ended print = folder.run("stepc p.step --layer-height 1 -o " + name);
+        const Ended print = folder.run("stepc p.step --layer-height 0.4 -o " + name);
         CHECK(print.status == 0);
         CHECK(print.out == lyr);
         CHECK(print.err.find("1 solid, 6 faces") != std::string::npos);
-        const Ended both = folder.run("stepc p.step --layer-height 1 -o a.lyr --report " + name);
+        const Ended both = folder.run("stepc p.step --layer-height 0.4 -o a.lyr --report " + name);
         CHECK(both.status == 0);
         CHECK(both.out == report);
         CHECK(both.err.find("1 solid, 6 faces") != std::string::npos);
         const Ended piped =
-            folder.run("stepc p.step --layer-height 1 -o a.lyr --report " + name + " | cat");
+            folder.run("stepc p.step --layer-height 0.4 -o a.lyr --report " + name + " | cat");
         CHECK(piped.out == report);
         const Ended cut = folder.run("stepc p.step --section-at z --report " + name);
         CHECK(cut.status == 0);

@@ -71,7 +71,7 @@ TEST_CASE("slicer 2: the same bytes for one, two and five threads") {
         std::set<std::string> results;
         for (const unsigned threads : {1u, 2u, 5u}) {
             Options options;
-            options.layer_height_mm = 0.5;
+            options.profile.layer.height_mm = 0.5;
             options.threads = threads;
             REQUIRE(print_part(file, scratch("threads.lyr"), options));
             results.insert(bytes_of(scratch("threads.lyr")));
@@ -85,8 +85,8 @@ TEST_CASE("slicer 4: the part stands on the bed at its place, whichever side is 
          {Vector3(0, 0, 1), Vector3(0, 0, -1), Vector3(1, 0, 0), Vector3(0, -1, 0)}) {
         Options options;
         options.up = up;
-        options.layer_height_mm = 1;
-        options.bed_position_mm = {20, 30};
+        options.profile.layer.height_mm = 1;
+        options.profile.plate.at_mm = {20, 30};
         const auto summary = print_part("gearbox_base.step", scratch("up.lyr"), options);
         REQUIRE(summary);
         CHECK((summary->box.min() - Vector3(20, 30, 0)).norm() < 1e-6);
@@ -121,6 +121,42 @@ TEST_CASE("slicer 1: a print that fails leaves the old file and nothing else") {
     CHECK(bytes_of(lyr) == "old");
     const auto entries = std::filesystem::directory_iterator(folder);
     CHECK(std::distance(begin(entries), end(entries)) == 1);
+}
+
+TEST_CASE("slicer: a print has its settings within it, and those of the material in its metadata") {
+    Options options;
+    options.profile.layer.height_mm = 1;
+    options.profile.filament = {"ABS", 2.85, 1.04, 0, 12, 1};
+    options.profile.temperature = {230, 240, 100, 110, 0};
+    options.profile.speed.travel_mm_s = 123;
+    options.profile_name = "abs";
+    options.configuration = "[layer]\nheight = 1\n";
+    CHECK(options.tolerance().total_mm == Tolerance{}.total_mm);
+    REQUIRE(print_part("cuboid.step", scratch("settings.lyr"), options));
+    auto reader = format::Reader::open(scratch("settings.lyr"));
+    REQUIRE(reader);
+    const format::Metadata& data = reader->header().metadata;
+    CHECK(data.material == "ABS");
+    CHECK(data.profile == "abs");
+    CHECK(data.filament_diameter_mm == 2.85);
+    CHECK(data.filament_density_g_cm3 == 1.04);
+    CHECK(data.configuration == options.configuration);
+    std::vector<std::pair<double, double>> bed_and_nozzle_c;
+    for (;;) {
+        auto operation = reader->next();
+        REQUIRE(operation);
+        if (!*operation) break;
+        if (!std::holds_alternative<format::LayerStart>(**operation)) continue;
+        const format::LayerState& state = reader->layer().state;
+        CHECK(state.travel_speed_mm_s == 123);
+        REQUIRE(state.temperatures.size() == 2);
+        bed_and_nozzle_c.emplace_back(state.temperatures[0].target_c,
+                                      state.temperatures[1].target_c);
+    }
+    REQUIRE(bed_and_nozzle_c.size() == 76);
+    CHECK(bed_and_nozzle_c.front() == std::pair(110.0, 240.0));
+    for (std::size_t i = 1; i < bed_and_nozzle_c.size(); ++i)
+        CHECK(bed_and_nozzle_c[i] == std::pair(100.0, 230.0));
 }
 
 TEST_CASE("slicer: a place that cannot be written is an error of output") {

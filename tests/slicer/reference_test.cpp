@@ -38,7 +38,7 @@ TEST_CASE("real files have the reference's solids, faces, box and sections") {
         REQUIRE_MESSAGE(model, file, ": ", model ? "" : to_string(model.error()));
         CHECK(model->solids.size() == part["solids"].value_or(0u));
         CHECK(model->faces.size() == part["faces"].value_or(0u));
-        const auto box = bounding_box(*model, options.tolerance);
+        const auto box = bounding_box(*model, options.tolerance());
         for (int axis = 0; axis < 3; ++axis) {
             const auto corner = [&](int i) {
                 return part["box_mm"][static_cast<std::size_t>(i)].value_or(NAN);
@@ -46,7 +46,7 @@ TEST_CASE("real files have the reference's solids, faces, box and sections") {
             CHECK(std::abs(box.min()[axis] - corner(axis)) < 1e-4);
             CHECK(std::abs(box.max()[axis] - corner(axis + 3)) < 1e-4);
         }
-        const Cutter cutter(*model, options.tolerance);
+        const Cutter cutter(*model, options.tolerance());
         for (const toml::node& row : *part["planes"].as_array()) {
             const auto number = [&](std::size_t i) {
                 return row.as_array()->get(i)->value_or(NAN);
@@ -55,7 +55,7 @@ TEST_CASE("real files have the reference's solids, faces, box and sections") {
             CAPTURE(z);
             const SectionFigures figures = figures_of(cutter.cut(z));
             const double allowed =
-                std::max(area_agreement * area, 0.5 * options.tolerance.total_mm * length);
+                std::max(area_agreement * area, 0.5 * options.tolerance().total_mm * length);
             CHECK(figures.open == 0);
             CHECK(std::abs(figures.area_mm2 - area) <= allowed);
             if (loops >= 0) CHECK(figures.loops == static_cast<std::size_t>(loops));
@@ -91,7 +91,7 @@ TEST_CASE("the areas of the sections add up to the reference's volume, whichever
             Diagnostics diagnostics;
             const auto model = load(parts + file, options, diagnostics);
             REQUIRE(model);
-            const Cutter cutter(*model, options.tolerance);
+            const Cutter cutter(*model, options.tolerance());
             const HeightRange range = cutter.height_range();
             // Not in step with the parts' own levels.
             constexpr int planes = 397;

@@ -178,7 +178,7 @@ void check_print(const std::vector<Model>& solids, const Expected& expected) {
         CHECK(std::abs(layer.enclosed_mm2 - expected.area_mm2) < 0.05);
         CHECK(!layer.fill_overlaps());
         // Rows of 0.4 mm lie this near to the area; filled twice, a quarter of the smallest overlap here is more.
-        CHECK(layer.filled_mm2(Options{}.line_width_mm) ==
+        CHECK(layer.filled_mm2(Options{}.profile.skin.width_mm) ==
               doctest::Approx(expected.area_mm2).epsilon(0.01));
     }
 }
