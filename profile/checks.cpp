@@ -41,6 +41,8 @@ constexpr Contradiction contradictions[] = {
      [](const Profile& p) { return p.skin.width_mm < p.layer.first_height_mm; }},
     {"infill.width", below, "layer.height",
      [](const Profile& p) { return p.infill.width_mm < p.layer.height_mm; }},
+    {"infill.width", below, "layer.first_height",
+     [](const Profile& p) { return p.infill.width_mm < p.layer.first_height_mm; }},
     {"perimeters.min_width", above, "perimeters.max_width",
      [](const Profile& p) { return p.perimeters.min_width_mm > p.perimeters.max_width_mm; }},
     {"fan.min", above, "fan.max", [](const Profile& p) { return p.fan.min > p.fan.max; }},

@@ -237,10 +237,11 @@ TEST_CASE("resolve 4: values that contradict each other are told with both origi
     for (const auto& [setting, message] : wrong) error_of({{}, {setting}}, usage, message);
     error_of({{}, {set("layer.adaptive", "true"), set("layer.max_height", "0.5")}}, usage,
              "layer.max_height = 0.5 (--set) is more than nozzle.diameter");
-    error_of(
-        {{},
-         {set("layer.first_height", "0.3"), set("skin.width", "0.29"), set("layer.height", "0.1")}},
-        usage, "skin.width = 0.29 (--set) is less than layer.first_height");
+    for (const std::string line : {"perimeters", "skin", "infill"})
+        error_of({{},
+                  {set("layer.first_height", "0.3"), set(line + ".width", "0.29"),
+                   set("layer.height", "0.1")}},
+                 usage, "width = 0.29 (--set) is less than layer.first_height = 0.3");
     const Folder folder("contradictions");
     const std::string path = folder.write("wrong.toml", "\n[layer]\nheight = 0.5\n");
     const Diagnostic error = error_of(
