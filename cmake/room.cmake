@@ -9,6 +9,24 @@ if(LYR_SANITIZE)
   target_link_options(lyr_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
+# lyr_precompile(<name> <library>...): headers that many sources read, read once. A folder whose CMakeLists.txt sets
+# LYR_HEADERS to the name has them; no source may rely on it, and -DLYR_PRECOMPILE=OFF builds without.
+function(lyr_precompile name)
+  if(LYR_PRECOMPILE)
+    file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/${name}.cpp CONTENT "")
+    add_library(${name} OBJECT ${PROJECT_BINARY_DIR}/${name}.cpp)
+    target_link_libraries(${name} PRIVATE lyr_flags ${ARGN})
+    target_precompile_headers(${name} PRIVATE <algorithm> <array> <cmath> <fstream> <functional> <map>
+      <optional> <random> <sstream> <string> <unordered_map> <variant> <vector>)
+  endif()
+endfunction()
+
+function(lyr_use_headers target)
+  if(LYR_HEADERS AND TARGET ${LYR_HEADERS})
+    target_precompile_headers(${target} REUSE_FROM ${LYR_HEADERS})
+  endif()
+endfunction()
+
 # lyr_room(<library> SOURCES <file>... [LINK <library>...] [PRIVATE <library>...])
 # Headers are included by their path from the root ("kernel/brep/model.h"); each room publishes only
 # its own folder, through a link in the build tree.
@@ -23,6 +41,7 @@ function(lyr_room name)
     add_library(${name} STATIC ${ROOM_SOURCES})
     target_link_libraries(${name} PUBLIC ${ROOM_LINK} PRIVATE lyr_flags ${ROOM_PRIVATE})
     target_include_directories(${name} PUBLIC ${published})
+    lyr_use_headers(${name})
   else()
     add_library(${name} INTERFACE)
     target_link_libraries(${name} INTERFACE ${ROOM_LINK})
@@ -33,10 +52,11 @@ endfunction()
 # lyr_test(<name> SOURCES <file>... LINK <library>...): one doctest program for one room.
 function(lyr_test name)
   cmake_parse_arguments(TEST "" "" "SOURCES;LINK" ${ARGN})
-  add_executable(${name} ${TEST_SOURCES} ${PROJECT_SOURCE_DIR}/tests/main.cpp)
-  target_link_libraries(${name} PRIVATE ${TEST_LINK} lyr_flags doctest::doctest)
+  add_executable(${name} ${TEST_SOURCES})
+  target_link_libraries(${name} PRIVATE ${TEST_LINK} lyr_flags lyr_test_main)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(${name} PRIVATE
     LYR_FIXTURES="${PROJECT_SOURCE_DIR}/fixtures" LYR_BUILD="${PROJECT_BINARY_DIR}")
+  lyr_use_headers(${name})
   add_test(NAME ${name} COMMAND ${name})
 endfunction()
