@@ -3,16 +3,13 @@
 // Contract
 //  1. The arcs start at `start` and end at `end`, exactly. Where they meet inside, they share the tangent; the
 //     first leaves and the last arrives along the curve's own tangent.
-//  2. No point of the curve is farther than `allowed_mm` from the arcs; the deviation's extrema are interpolated
-//     between samples, not just sampled (see fit.cpp).
-//  3. Arcs are as long as the bound allows, found by bisection.
-//
+//  2. No point of the curve is farther than `allowed_mm` from the arcs: they are held to points of it so dense that
+//     nothing happens between them (see fit.cpp).
+//  3. They are nearly as few as can be: docs/algorithms/arcs.md has the counts.
 //  4. The same holds for a curve given by points, densely enough that its chords are a curve to the caller: every
 //     point is within `allowed_mm`, between two neighbours the arcs stray no farther from their chord than the
 //     curve does. A point that is there twice, with two tangents, is a corner; the arcs have it too. A stretch that is
 //     straight comes out as a line.
-//
-// Method: biarcs with equal tangent lengths (Bolton, "Biarc curves", CAD 7(2), 1975), greedily.
 
 #pragma once
 

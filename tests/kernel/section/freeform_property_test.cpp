@@ -137,7 +137,7 @@ void check_mirrored(const Model& model) {
         CHECK(worst_distance(other, b) <= tolerance.total_mm);
         CHECK(std::abs(area_of(a) - area_of(b)) <= 2 * tolerance.total_mm * length_of(a));
         const auto moment = [](const Section& section) {
-            // Twice the area's first moment about x = 0, by the polygon of segment ends: enough to tell left from right.
+            // Twice the area's first moment about x = 0, by a polygon: enough to tell left from right.
             double sum = 0;
             for (const SolidSection& solid : section.solids) {
                 for (const Contour& contour : solid.contours) {
@@ -145,7 +145,12 @@ void check_mirrored(const Model& model) {
                     if (!path) continue;
                     Point2 from = path->start;
                     for (const Segment& segment : path->segments) {
-                        sum += cross(from, segment.end) * (from.x() + segment.end.x()) / 3;
+                        Point2 last = from;
+                        for (const double along : {0.25, 0.5, 0.75, 1.0}) {
+                            const Point2 next = point_at(from, segment, along);
+                            sum += cross(last, next) * (last.x() + next.x()) / 3;
+                            last = next;
+                        }
                         from = segment.end;
                     }
                 }
