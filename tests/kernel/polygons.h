@@ -69,14 +69,14 @@ inline double length_mm(const ClipperLib::Paths& paths) {
     return length;
 }
 
-// The area of what is in one of them only.
-inline double difference_mm2(const ClipperLib::Paths& a, const ClipperLib::Paths& b) {
+// What is in one of them only.
+inline ClipperLib::Paths difference_of(const ClipperLib::Paths& a, const ClipperLib::Paths& b) {
     ClipperLib::Clipper clipper;
     clipper.AddPaths(a, ClipperLib::ptSubject, true);
     clipper.AddPaths(b, ClipperLib::ptClip, true);
     ClipperLib::Paths result;
     clipper.Execute(ClipperLib::ctXor, result, ClipperLib::pftNonZero, ClipperLib::pftNonZero);
-    return area_mm2(result);
+    return result;
 }
 
 }  // namespace lyr::testing
