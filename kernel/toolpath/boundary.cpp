@@ -135,6 +135,15 @@ double Boundary::distance_mm(const Point2& point, double within_mm) const {
     return least;
 }
 
+bool Boundary::is_alone(std::size_t piece, const Point2& point, double within_mm) const {
+    const Vector2 margin(within_mm, within_mm);
+    bool alone = true;
+    tree_.meeting({point - margin, point + margin}, [&](std::uint32_t i) {
+        alone = alone && (i == piece || pieces_[i].distance_mm(point) > within_mm);
+    });
+    return alone;
+}
+
 int Boundary::winding(const Point2& point) const {
     const Point2 far(std::max(point.x(), tree_.bounds().max().x()), point.y());
     int sum = 0;

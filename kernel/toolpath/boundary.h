@@ -4,6 +4,7 @@
 //  1. winding() counts at any point, also where a contour's segments meet; on the boundary itself it is that of one of
 //     its sides.
 //  2. distance_mm() is exact up to `within_mm`; beyond that it is `within_mm`.
+//  3. is_alone() says whether of all pieces only the one given by its place comes so near to the point.
 //
 // Cost: log n for each question and what is near (or, for the winding, to the right) besides.
 
@@ -55,6 +56,7 @@ public:
     // In the order of the contours. Segments without length are left out.
     const std::vector<BoundaryPiece>& pieces() const { return pieces_; }
     double distance_mm(const Point2& point, double within_mm) const;
+    bool is_alone(std::size_t piece, const Point2& point, double within_mm) const;
     int winding(const Point2& point) const;
 
 private:

@@ -22,10 +22,10 @@ constexpr double pi = std::numbers::pi;
 // segment does not hide it. The result's boundary may be off by one, and what is wider than two is no sliver.
 constexpr double depth_share = 2;
 
-// In the tolerance. So far beside the middle of a segment, windings are counted if no other part of the boundary is as
-// near.
+// In the tolerance. So far beside a segment, windings are counted if no other part of the boundary is near that place:
+// where contours touch, each is on the other's wrong side.
 constexpr double probe_share = 2;
-constexpr double clear_share = 1.5;
+constexpr double clear_share = 4;
 
 Vector2 right_of(const Vector2& direction) {
     return {direction.y(), -direction.x()};
@@ -69,6 +69,8 @@ private:
 
     Fault wrong_distance_at(const Point2& point) const;
     Fault wrong_distance() const;
+    std::optional<bool> has_material_left(std::size_t index, const Point2& point,
+                                          const Vector2& tangent) const;
     Fault wrong_side() const;
     double covered_beside(const BoundaryPiece& piece) const;
     double covered_around(const BoundaryPiece& before, const BoundaryPiece& after) const;
@@ -102,23 +104,32 @@ Check::Fault Check::wrong_distance() const {
     return std::nullopt;
 }
 
+// None: other parts of the boundary are too near to tell.
+std::optional<bool> Check::has_material_left(std::size_t index, const Point2& point,
+                                             const Vector2& tangent) const {
+    const double probe_mm = probe_share * slack_mm_, clear_mm = clear_share * slack_mm_;
+    const BoundaryPiece& piece = result_.pieces()[index];
+    // Beyond the centre of a tiny circle is the other side of it.
+    if (std::abs(piece.curvature_per_mm) * clear_mm > 1 ||
+        !result_.is_alone(index, point, clear_mm)) {
+        return std::nullopt;
+    }
+    const Vector2 right = probe_mm * right_of(tangent);
+    return result_.winding(point - right) == 1 && result_.winding(point + right) == 0;
+}
+
 // A contour that is nowhere near the region's boundary is all on one side of it, and one that no other crosses has the
 // material on its left everywhere: once a contour is enough.
 Check::Fault Check::wrong_side() const {
     std::vector<bool> seen(contours_.size(), false);
-    const double probe_mm = probe_share * slack_mm_, clear_mm = clear_share * slack_mm_;
-    for (const BoundaryPiece& piece : result_.pieces()) {
+    for (std::size_t i = 0; i < result_.pieces().size(); ++i) {
+        const BoundaryPiece& piece = result_.pieces()[i];
         if (seen[piece.contour]) continue;
-        const Vector2 right = probe_mm * right_of(piece.middle_tangent);
-        const Point2 inside = piece.middle - right, outside = piece.middle + right;
-        if (result_.distance_mm(inside, probe_mm) < clear_mm ||
-            result_.distance_mm(outside, probe_mm) < clear_mm) {
-            continue;
-        }
+        auto left = has_material_left(i, piece.middle, piece.middle_tangent);
+        if (!left && piece.is_circle) left = has_material_left(i, piece.start, piece.start_tangent);
+        if (!left) continue;
         seen[piece.contour] = true;
-        if (result_.winding(inside) != 1 || result_.winding(outside) != 0) {
-            return OffsetFault{Kind::nesting, piece.middle};
-        }
+        if (!*left) return OffsetFault{Kind::nesting, piece.middle};
         if ((source_.winding(piece.middle) > 0) == outwards_) {
             return OffsetFault{Kind::side, piece.middle};
         }

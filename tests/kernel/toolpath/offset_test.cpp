@@ -80,3 +80,22 @@ TEST_CASE("offset: a disc that is offset inwards by more than its radius is gone
         CHECK(offset_by({halves}, distance).contours.empty());
     }
 }
+
+TEST_CASE("offset 5: where contours touch in the middle of a segment, nothing is wrong") {
+    // The hole grows to touch the wall at just the place where the check would look which side is which.
+    const Contours touches_wall{rectangle(0, 0, 136, 64.5),
+                                FullCircle{{30, 32.25}, 1.6499999999999986, false}};
+    // The region splits along a gap without width.
+    const Contours touch_each_other{rectangle(0, 0, 10, 10), FullCircle{{5, 5}, 1, false},
+                                    reversed(rectangle(4, 8, 6, 9))};
+    for (const auto& [region, distance] :
+         {std::pair{touches_wall, -14.175}, std::pair{touch_each_other, -1.0}}) {
+        for (const double angle : {0.0, 0.3, pi / 2}) {
+            CAPTURE(distance);
+            CAPTURE(angle);
+            const OffsetResult result = offset_by(moved(region, {angle, {3, -7}}), distance);
+            CHECK(!result.second_method);
+            CHECK(!result.unresolved);
+        }
+    }
+}
