@@ -22,6 +22,12 @@ constexpr double meeting_share = 0.4;
 // Meetings at a smaller angle (its sine) come after the others: they are the less certain of where they are.
 constexpr double shallow = 0.1;
 
+// Where two sources meet.
+struct Meeting {
+    Point2 point;
+    std::uint32_t a, b;
+};
+
 struct Passing {
     std::uint32_t vertex;
     bool bound;  // a meeting on this curve: it has to pass
@@ -42,8 +48,7 @@ public:
 
     Arrangement result() {
         add_ends();
-        add_meetings(false);
-        add_meetings(true);
+        add_meetings();
         make_edges();
         finish(vertices_.points(), snap_mm_, result_);
         return std::move(result_);
@@ -55,8 +60,9 @@ private:
     std::uint32_t add_vertex(const Point2& point);
     void bind(std::uint32_t vertex, std::uint32_t a, std::uint32_t b);
     void add_ends();
-    void add_meetings(bool at_shallow_angles);
-    void add_meetings(std::uint32_t a, std::uint32_t b, bool at_shallow_angles);
+    void add_meetings();
+    void add_meetings(std::uint32_t a, std::uint32_t b);
+    void add_meeting(const Meeting& meeting);
     std::optional<std::uint32_t> common_vertex(std::uint32_t a, std::uint32_t b,
                                                const Point2& point) const;
     std::uint32_t within(std::uint32_t source, std::uint32_t vertex) const;
@@ -73,13 +79,14 @@ private:
     BoxTree tree_;
     std::vector<std::uint32_t> starts_, ends_;    // vertices by source
     std::vector<std::vector<Passing>> passings_;  // by source, as they came
+    std::vector<Meeting> shallow_;                // at small angles, for later
 };
 
 std::vector<Box2> Arranger::boxes_of(std::span<const Source> sources, double margin_mm) {
     const Vector2 margin(margin_mm, margin_mm);
     std::vector<Box2> boxes;
     for (const Source& source : sources) {
-        const Box2 box = box_of(source.curve);
+        const Box2 box = bounds_of(source.curve);
         boxes.push_back({box.min() - margin, box.max() + margin});
     }
     return boxes;
@@ -92,8 +99,8 @@ std::uint32_t Arranger::add_vertex(const Point2& point) {
     if (vertex < before) return vertex;
     tree_.meeting(Box2(point), [&](std::uint32_t s) {
         const Curve& curve = result_.sources[s].curve;
-        if (std::abs(along_mm(curve, point)) < curve.half_mm &&
-            std::abs(across_mm(curve, point)) <= snap_mm_) {
+        if (std::abs(across_mm(curve, point)) <= snap_mm_ &&
+            std::abs(along_mm(curve, point)) < curve.half_mm) {
             passings_[s].push_back({vertex, false});
         }
     });
@@ -148,11 +155,11 @@ std::optional<std::uint32_t> Arranger::common_vertex(std::uint32_t a, std::uint3
     std::optional<std::uint32_t> best;
     double best_mm = std::numeric_limits<double>::infinity();
     const auto consider = [&](std::uint32_t vertex) {
+        if (!is_on(b, vertex)) return;
         const double there = along_mm(one, vertices_.points()[vertex]);
         if (std::abs(there - here) < best_mm &&
             std::abs(across_mm(other, point_on(one, there))) <= snap_mm_ &&
-            std::abs(across_mm(other, point_on(one, (here + there) / 2))) <= near_mm_ &&
-            is_on(b, vertex)) {
+            std::abs(across_mm(other, point_on(one, (here + there) / 2))) <= near_mm_) {
             best = vertex;
             best_mm = std::abs(there - here);
         }
@@ -171,24 +178,31 @@ std::uint32_t Arranger::within(std::uint32_t source, std::uint32_t vertex) const
     return along < 0 ? starts_[source] : ends_[source];
 }
 
-void Arranger::add_meetings(std::uint32_t a, std::uint32_t b, bool at_shallow_angles) {
+void Arranger::add_meeting(const Meeting& meeting) {
+    const std::uint32_t a = meeting.a, b = meeting.b;
+    const auto common = common_vertex(a, b, meeting.point);
+    std::uint32_t vertex = common ? *common : add_vertex(meeting.point);
+    // What moved beyond an end is that end: a curve that went there would have to come back.
+    for (const std::uint32_t source : {a, b}) vertex = within(source, vertex);
+    bind(vertex, a, b);
+}
+
+void Arranger::add_meetings(std::uint32_t a, std::uint32_t b) {
     const Curve &one = result_.sources[a].curve, &other = result_.sources[b].curve;
     const Meetings found = meetings(one, other);
     for (int i = 0; i < found.count; ++i) {
         const Point2& point = found.points[static_cast<std::size_t>(i)];
         if (!passes(one, point, near_mm_) || !passes(other, point, near_mm_)) continue;
-        const double sine =
-            cross(tangent_at(one, along_mm(one, point)), tangent_at(other, along_mm(other, point)));
-        if ((std::abs(sine) < shallow) != at_shallow_angles) continue;
-        const auto common = common_vertex(a, b, point);
-        std::uint32_t vertex = common ? *common : add_vertex(point);
-        // What moved beyond an end is that end: a curve that went there would have to come back.
-        for (const std::uint32_t source : {a, b}) vertex = within(source, vertex);
-        bind(vertex, a, b);
+        const double sine = cross(tangent_beside(one, point), tangent_beside(other, point));
+        if (std::abs(sine) < shallow) {
+            shallow_.push_back({point, a, b});
+        } else {
+            add_meeting({point, a, b});
+        }
     }
 }
 
-void Arranger::add_meetings(bool at_shallow_angles) {
+void Arranger::add_meetings() {
     std::vector<std::uint32_t> others;
     for (std::uint32_t i = 0; i < boxes_.size(); ++i) {
         others.clear();
@@ -196,8 +210,9 @@ void Arranger::add_meetings(bool at_shallow_angles) {
             if (j > i) others.push_back(j);
         });
         std::sort(others.begin(), others.end());
-        for (const std::uint32_t j : others) add_meetings(i, j, at_shallow_angles);
+        for (const std::uint32_t j : others) add_meetings(i, j);
     }
+    for (const Meeting& meeting : shallow_) add_meeting(meeting);
 }
 
 // The vertices between the ends in their order. Of two that lie side by side rather than one behind the other, a curve

@@ -29,7 +29,13 @@ private:
         std::uint32_t first, last, second;
     };
 
-    void build(std::uint32_t first, std::uint32_t last);
+    // Twice the centre, which does as well.
+    struct Place {
+        Point2 centre2;
+        std::uint32_t item;
+    };
+
+    void build(std::span<Place> places, std::uint32_t first, std::uint32_t last);
 
     template <class Take>
     void visit(std::uint32_t index, const Box2& box, Take& take) const {

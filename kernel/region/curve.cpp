@@ -18,17 +18,27 @@ Vector2 left_of(const Vector2& direction) {
     return {-direction.y(), direction.x()};
 }
 
-// Where the curve runs parallel to a direction, strictly between its ends, from the start on.
+// Where the curve runs parallel to an axis, strictly between its ends, from the start on.
 struct Turns {
     std::array<double, 3> along_mm{};
     std::size_t count = 0;
 };
 
-Turns turns_of(const Curve& curve, double direction_rad) {
+// tan x < 1.56 x for x in (0, 1).
+constexpr double quick_turn_rad = 1, tangent_bound = 1.56;
+
+// Whether the curve surely turns by less than the angle that its middle's tangent has to the axis.
+bool turns_little(const Curve& curve, int axis) {
+    const double half_turn = std::abs(curve.curvature_per_mm) * curve.half_mm;
+    return half_turn < quick_turn_rad && tangent_bound * half_turn * std::abs(curve.tangent[axis]) <
+                                             std::abs(curve.tangent[1 - axis]);
+}
+
+Turns turns_of(const Curve& curve, int axis) {
     Turns turns;
     const double k = curve.curvature_per_mm;
-    if (k == 0) return turns;
-    const double ahead = direction_rad - std::atan2(curve.tangent.y(), curve.tangent.x());
+    if (k == 0 || turns_little(curve, axis)) return turns;
+    const double ahead = axis * pi / 2 - std::atan2(curve.tangent.y(), curve.tangent.x());
     const double half = std::abs(k) * curve.half_mm;
     // ahead + n pi in (-half, half)
     const double first = std::ceil((-half - ahead) / pi), last = std::floor((half - ahead) / pi);
@@ -145,18 +155,26 @@ Vector2 tangent_at(const Curve& curve, double along) {
     return c * curve.tangent + s * left_of(curve.tangent);
 }
 
+Vector2 tangent_beside(const Curve& curve, const Point2& point) {
+    const Vector2 offset = point - curve.middle;
+    const double k = curve.curvature_per_mm;
+    const Vector2 direction = (1 - k * cross(curve.tangent, offset)) * curve.tangent +
+                              k * offset.dot(curve.tangent) * left_of(curve.tangent);
+    return direction.normalized();
+}
+
 bool passes(const Curve& curve, const Point2& point, double within_mm) {
-    if (std::abs(along_mm(curve, point)) <= curve.half_mm) {
-        return std::abs(across_mm(curve, point)) <= within_mm;
-    }
+    // What is that far from the whole circle is so from the ends too.
+    if (std::abs(across_mm(curve, point)) > within_mm) return false;
+    if (std::abs(along_mm(curve, point)) <= curve.half_mm) return true;
     return (point - curve.start).norm() <= within_mm || (point - curve.end).norm() <= within_mm;
 }
 
 Box2 box_of(const Curve& curve) {
     Box2 box(curve.start);
     box.extend(curve.end);
-    for (const double direction : {0.0, pi / 2}) {
-        const Turns turns = turns_of(curve, direction);
+    for (const int axis : {0, 1}) {
+        const Turns turns = turns_of(curve, axis);
         for (std::size_t t = 0; t < turns.count; ++t) {
             box.extend(point_on(curve, turns.along_mm[t]));
         }

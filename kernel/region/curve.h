@@ -42,11 +42,23 @@ double across_mm(const Curve& curve, const Point2& point);
 Point2 point_on(const Curve& curve, double along);
 Vector2 tangent_at(const Curve& curve, double along);
 
+// At the point's foot.
+Vector2 tangent_beside(const Curve& curve, const Point2& point);
+
 // Whether the curve passes the point within a distance.
 bool passes(const Curve& curve, const Point2& point, double within_mm);
 
 Box2 box_of(const Curve& curve);
 Box2 box_of(const Contour& contour);
+
+// A box that holds the curve, of no more than half a circle: found faster than the least one, and hardly larger for a
+// flat arc.
+inline Box2 bounds_of(const Curve& curve) {
+    // The sagitta is 1 - cos(k half) over k.
+    const double sagitta = std::abs(curve.curvature_per_mm) * curve.half_mm * curve.half_mm / 2;
+    const Vector2 margin(sagitta, sagitta);
+    return {curve.start.cwiseMin(curve.end) - margin, curve.start.cwiseMax(curve.end) + margin};
+}
 
 struct Meetings {
     std::array<Point2, 2> points{Point2::Zero(), Point2::Zero()};

@@ -14,16 +14,16 @@ constexpr double probe_snaps = 4;
 constexpr double clear_snaps = 6;
 constexpr double near_snaps = 2;
 
-std::vector<Curve> shapes_of(const Arrangement& arrangement, const Sweep& sweep) {
-    std::vector<Curve> shapes;
-    for (const SweptEdge& edge : sweep.edges)
-        shapes.push_back(shape_of(edge, arrangement.vertices));
-    return shapes;
-}
-
-std::vector<Box2> boxes_of(std::span<const Curve> curves) {
+// Of edges, which are no more than half a circle.
+std::vector<Box2> boxes_of(const Arrangement& arrangement, const Sweep& sweep) {
     std::vector<Box2> boxes;
-    for (const Curve& curve : curves) boxes.push_back(box_of(curve));
+    boxes.reserve(sweep.edges.size());
+    for (const SweptEdge& edge : sweep.edges) {
+        const Point2 &low = arrangement.vertices[edge.low], &high = arrangement.vertices[edge.high];
+        const double sagitta = std::abs(edge.sagitta_mm);
+        const Vector2 margin(sagitta, sagitta);
+        boxes.push_back({low.cwiseMin(high) - margin, low.cwiseMax(high) + margin});
+    }
     return boxes;
 }
 
@@ -49,24 +49,27 @@ std::vector<std::uint32_t> longest_edges(const Arrangement& arrangement, const S
 bool windings_agree(std::span<const Input> inputs, const Arrangement& arrangement,
                     const Sweep& sweep, double snap_mm) {
     const WindingCount count(inputs, arrangement.sources);
-    const std::vector<Curve> shapes = shapes_of(arrangement, sweep);
-    const BoxTree tree(boxes_of(shapes));
+    const BoxTree tree(boxes_of(arrangement, sweep));
+    const auto shape = [&](std::uint32_t e) {
+        return shape_of(sweep.edges[e], arrangement.vertices);
+    };
     const double clear_mm = clear_snaps * snap_mm, near_mm = near_snaps * snap_mm;
-    const auto is_alone = [&](std::uint32_t e) {
-        const Point2& middle = shapes[e].middle;
+    const auto is_alone = [&](std::uint32_t e, const Point2& middle) {
         const Vector2 margin(clear_mm, clear_mm);
         bool alone = true;
         tree.meeting({middle - margin, middle + margin}, [&](std::uint32_t other) {
-            alone = alone && (other == e || !passes(shapes[other], middle, clear_mm));
+            alone = alone && (other == e || !passes(shape(other), middle, clear_mm));
         });
         return alone;
     };
     const std::vector<std::uint32_t> longest = longest_edges(arrangement, sweep);
     return std::all_of(longest.begin(), longest.end(), [&](std::uint32_t e) {
-        if (e == none || !is_alone(e)) return true;
-        const Vector2 across(-shapes[e].tangent.y(), shapes[e].tangent.x());
-        const Point2 left = shapes[e].middle + probe_snaps * snap_mm * across;
-        const Point2 right = shapes[e].middle - probe_snaps * snap_mm * across;
+        if (e == none) return true;
+        const Curve curve = shape(e);
+        if (!is_alone(e, curve.middle)) return true;
+        const Vector2 across(-curve.tangent.y(), curve.tangent.x());
+        const Point2 left = curve.middle + probe_snaps * snap_mm * across;
+        const Point2 right = curve.middle - probe_snaps * snap_mm * across;
         // Where a curve passes, its edges may be on the other side of the point, or gone with those that they cancel.
         if (count.is_near(left, near_mm) || count.is_near(right, near_mm)) return true;
         return count.at(left) == sweep.edges[e].left && count.at(right) == sweep.edges[e].right;

@@ -5,7 +5,7 @@ namespace {
 
 std::vector<Box2> boxes_of(std::span<const Source> sources) {
     std::vector<Box2> boxes;
-    for (const Source& source : sources) boxes.push_back(box_of(source.curve));
+    for (const Source& source : sources) boxes.push_back(bounds_of(source.curve));
     return boxes;
 }
 

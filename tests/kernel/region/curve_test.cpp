@@ -38,6 +38,8 @@ TEST_CASE("curve 1: points, feet and distances agree with the segment's") {
             CHECK(std::abs(across_mm(curve, beside) - offset_mm(start, segment, beside)) < bound);
             if (std::abs(sweep_rad(start, segment)) < 1.8 * pi) {
                 CHECK(std::abs(along_mm(curve, point) - along) < bound);
+                CHECK((tangent_beside(curve, beside) - tangent_at(curve, along_mm(curve, beside)))
+                          .norm() < 1e-11);
             }
         }
     }
@@ -61,6 +63,7 @@ TEST_CASE("curve 2: a contour is cut into curves that only rise or only fall, en
                     CHECK(up * point.y() > before - 1e-12);
                     before = up * point.y();
                     CHECK(box_of(curve).exteriorDistance(point) < 1e-12);
+                    CHECK(bounds_of(curve).exteriorDistance(point) < 1e-12);
                     CHECK(box_of(contour).exteriorDistance(point) < 1e-12);
                 }
             }
