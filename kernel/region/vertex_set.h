@@ -17,11 +17,13 @@ public:
 
     // The nearest vertex within apart_mm; if there is none, a new one, which is points().size() before.
     std::uint32_t add(const Point2& point) {
-        const Cell cell = cell_of(point);
+        // A cell is as wide as what lies within apart_mm on both sides: that is in no more than two.
+        const Vector2 margin(apart_mm_, apart_mm_);
+        const Cell low = cell_of(point - margin), high = cell_of(point + margin);
         std::uint32_t best = static_cast<std::uint32_t>(points_.size());
         double best_mm = apart_mm_;
-        for (std::int64_t y = cell.y - 1; y <= cell.y + 1; ++y) {
-            for (std::int64_t x = cell.x - 1; x <= cell.x + 1; ++x) {
+        for (std::int64_t y = low.y; y <= high.y; ++y) {
+            for (std::int64_t x = low.x; x <= high.x; ++x) {
                 const auto found = last_in_.find({x, y});
                 if (found == last_in_.end()) continue;
                 for (std::uint32_t v = found->second; v != end_of_cell; v = next_in_cell_[v]) {
@@ -61,7 +63,8 @@ private:
     static constexpr std::uint32_t end_of_cell = ~std::uint32_t{0};
 
     Cell cell_of(const Point2& point) const {
-        return {std::llround(point.x() / apart_mm_), std::llround(point.y() / apart_mm_)};
+        return {std::llround(point.x() / (2 * apart_mm_)),
+                std::llround(point.y() / (2 * apart_mm_))};
     }
 
     double apart_mm_;

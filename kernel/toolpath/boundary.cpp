@@ -135,13 +135,13 @@ double Boundary::distance_mm(const Point2& point, double within_mm) const {
     return least;
 }
 
-bool Boundary::is_alone(std::size_t piece, const Point2& point, double within_mm) const {
+bool Boundary::is_near(const Point2& point, double within_mm, std::size_t except) const {
     const Vector2 margin(within_mm, within_mm);
-    bool alone = true;
+    bool near = false;
     tree_.meeting({point - margin, point + margin}, [&](std::uint32_t i) {
-        alone = alone && (i == piece || pieces_[i].distance_mm(point) > within_mm);
+        near = near || (i != except && pieces_[i].distance_mm(point) <= within_mm);
     });
-    return alone;
+    return near;
 }
 
 int Boundary::winding(const Point2& point) const {

@@ -4,7 +4,7 @@
 //  1. winding() counts at any point, also where a contour's segments meet; on the boundary itself it is that of one of
 //     its sides.
 //  2. distance_mm() is exact up to `within_mm`; beyond that it is `within_mm`.
-//  3. is_alone() says whether of all pieces only the one given by its place comes so near to the point.
+//  3. is_near() says whether any piece (but for one, given by its place among pieces()) comes so near to the point.
 //
 // Cost: log n for each question and what is near (or, for the winding, to the right) besides.
 
@@ -51,12 +51,14 @@ void for_neighbours(const std::vector<BoundaryPiece>& pieces, Take take) {
 
 class Boundary {
 public:
+    static constexpr auto none = static_cast<std::size_t>(-1);
+
     explicit Boundary(Region region);
 
     // In the order of the contours. Segments without length are left out.
     const std::vector<BoundaryPiece>& pieces() const { return pieces_; }
     double distance_mm(const Point2& point, double within_mm) const;
-    bool is_alone(std::size_t piece, const Point2& point, double within_mm) const;
+    bool is_near(const Point2& point, double within_mm, std::size_t except = none) const;
     int winding(const Point2& point) const;
 
 private:

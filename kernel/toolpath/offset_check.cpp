@@ -18,9 +18,13 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-// In allowed_mm. A point is missed if it is so deep in the offset; it is looked for twice as deep, so that its own
-// segment does not hide it. The result's boundary may be off by one, and what is wider than two is no sliver.
-constexpr double depth_share = 2;
+// In the tolerance. The result's boundary is looked for where a disc of this radius lies in the offset and touches its
+// boundary: it may be off by one there, and where the disc fits is no sliver.
+constexpr double disc_share = 4;
+constexpr double boundary_share = 2;
+
+// Segments that meet at a smaller angle have no corner: what is beside it is beside their middles too.
+constexpr double smooth_rad = 1e-3;
 
 // In the tolerance. So far beside a segment, windings are counted if no other part of the boundary is near that place:
 // where contours touch, each is on the other's wrong side.
@@ -76,7 +80,8 @@ private:
     double covered_around(const BoundaryPiece& before, const BoundaryPiece& after) const;
     double covered_mm2() const;
     Fault wrong_area() const;
-    Fault missing_beside(const Point2& place, const Vector2& towards) const;
+    Fault missing_beside(const Point2& place, const Vector2& towards,
+                         std::vector<bool>::reference counted) const;
     Fault missing() const;
 
     const OffsetRequest& request_;
@@ -88,10 +93,11 @@ private:
 
 Check::Fault Check::wrong_distance_at(const Point2& point) const {
     const double far_mm = mitred_mm_ + slack_mm_;
-    const double distance = source_.distance_mm(point, 2 * far_mm);
+    const double distance = source_.distance_mm(point, far_mm + slack_mm_);
     // Not "less or more": what is no number is wrong.
     if (distance >= distance_mm_ - slack_mm_ && distance <= far_mm) return std::nullopt;
-    return OffsetFault{Kind::distance, point, distance - distance_mm_};
+    return OffsetFault{Kind::distance, point,
+                       source_.distance_mm(point, 2 * far_mm) - distance_mm_};
 }
 
 Check::Fault Check::wrong_distance() const {
@@ -111,7 +117,7 @@ std::optional<bool> Check::has_material_left(std::size_t index, const Point2& po
     const BoundaryPiece& piece = result_.pieces()[index];
     // Beyond the centre of a tiny circle is the other side of it.
     if (std::abs(piece.curvature_per_mm) * clear_mm > 1 ||
-        !result_.is_alone(index, point, clear_mm)) {
+        result_.is_near(point, clear_mm, index)) {
         return std::nullopt;
     }
     const Vector2 right = probe_mm * right_of(tangent);
@@ -180,26 +186,37 @@ Check::Fault Check::wrong_area() const {
     return OffsetFault{Kind::area, contours_.empty() ? Point2::Zero() : start_of(contours_[0])};
 }
 
-Check::Fault Check::missing_beside(const Point2& place, const Vector2& towards) const {
-    const double depth_mm = depth_share * slack_mm_;
-    const Point2 point = place + (mitred_mm_ + 2 * depth_mm) * towards;
-    // It may be beyond another part of the boundary, on its own side or not.
-    if (source_.distance_mm(point, mitred_mm_ + 2 * depth_mm) < mitred_mm_ + depth_mm ||
-        (source_.winding(point) > 0) == outwards_) {
-        return std::nullopt;
-    }
-    // Outwards, the other side of the boundary is what may be missing: a hole.
-    if (result_.winding(point) == (outwards_ ? 0 : 1)) return std::nullopt;
-    return OffsetFault{Kind::incomplete, point};
+// The disc around a point deep in the offset, up to the place it is beside, has no boundary of the region in it, or
+// nothing is asked. Then on the way to the place is the offset's boundary, at the distance. Where mitres may have moved
+// it, and once a contour, the result is asked how often it winds around the point instead.
+Check::Fault Check::missing_beside(const Point2& place, const Vector2& towards,
+                                   std::vector<bool>::reference counted) const {
+    const double reach_mm = mitred_mm_ + disc_share * slack_mm_;
+    const Point2 deep = place + reach_mm * towards;
+    if (source_.is_near(deep, reach_mm - resolution_mm)) return std::nullopt;
+    const bool found =
+        !counted || mitred_mm_ > distance_mm_
+            // Outwards, the other side of the boundary is what may be missing: a hole.
+            ? result_.winding(deep) == (outwards_ ? 0 : 1)
+            : result_.is_near(place + distance_mm_ * towards, boundary_share * slack_mm_);
+    counted = true;
+    // Where the region's boundary touches itself, the point may be on another side than the place's.
+    if (found || (source_.winding(deep) > 0) == outwards_) return std::nullopt;
+    return OffsetFault{Kind::incomplete, deep};
 }
 
 Check::Fault Check::missing() const {
     Fault found;
+    std::vector<bool> counted(source_contours_.size(), false);
+    const auto look = [&](const BoundaryPiece& piece, const Point2& place, const Vector2& tangent) {
+        if (!found) found = missing_beside(place, across(tangent), counted[piece.contour]);
+    };
     for_neighbours(source_.pieces(), [&](const BoundaryPiece& before, const BoundaryPiece& piece) {
-        if (!found) found = missing_beside(piece.middle, across(piece.middle_tangent));
+        look(piece, piece.middle, piece.middle_tangent);
         const Vector2 middle = before.end_tangent + piece.start_tangent;
-        if (found || piece.is_circle || middle.norm() < cusp_rad) return;
-        found = missing_beside(piece.start, across(middle.normalized()));
+        const double turn = std::abs(cross(before.end_tangent, piece.start_tangent));
+        if (piece.is_circle || turn < smooth_rad || middle.norm() < cusp_rad) return;
+        look(piece, piece.start, middle.normalized());
     });
     return found;
 }
