@@ -60,6 +60,7 @@ private:
     std::uint32_t add_vertex(const Point2& point);
     void bind(std::uint32_t vertex, std::uint32_t a, std::uint32_t b);
     void add_ends();
+    bool share_end_at(std::uint32_t a, std::uint32_t b, const Point2& point) const;
     void add_meetings();
     void add_meetings(std::uint32_t a, std::uint32_t b);
     void add_meeting(const Meeting& meeting);
@@ -99,6 +100,8 @@ std::uint32_t Arranger::add_vertex(const Point2& point) {
     if (vertex < before) return vertex;
     tree_.meeting(Box2(point), [&](std::uint32_t s) {
         const Curve& curve = result_.sources[s].curve;
+        // Its own end is on its way as it is.
+        if (point == curve.start || point == curve.end) return;
         if (std::abs(across_mm(curve, point)) <= snap_mm_ &&
             std::abs(along_mm(curve, point)) < curve.half_mm) {
             passings_[s].push_back({vertex, false});
@@ -187,11 +190,21 @@ void Arranger::add_meeting(const Meeting& meeting) {
     bind(vertex, a, b);
 }
 
+bool Arranger::share_end_at(std::uint32_t a, std::uint32_t b, const Point2& point) const {
+    const auto is_shared_end = [&](std::uint32_t vertex) {
+        return (vertex == starts_[b] || vertex == ends_[b]) &&
+               (vertices_.points()[vertex] - point).norm() <= near_mm_;
+    };
+    return is_shared_end(starts_[a]) || is_shared_end(ends_[a]);
+}
+
 void Arranger::add_meetings(std::uint32_t a, std::uint32_t b) {
     const Curve &one = result_.sources[a].curve, &other = result_.sources[b].curve;
     const Meetings found = meetings(one, other);
     for (int i = 0; i < found.count; ++i) {
         const Point2& point = found.points[static_cast<std::size_t>(i)];
+        // Neighbours, as a rule: there is nothing to do.
+        if (share_end_at(a, b, point)) continue;
         if (!passes(one, point, near_mm_) || !passes(other, point, near_mm_)) continue;
         const double sine = cross(tangent_beside(one, point), tangent_beside(other, point));
         if (std::abs(sine) < shallow) {
@@ -267,6 +280,10 @@ void Arranger::make_edges() {
     result_.steps.assign(inputs_.size(), 0);
     for (std::uint32_t s = 0; s < result_.sources.size(); ++s) {
         const double k = result_.sources[s].curve.curvature_per_mm;
+        if (passings_[s].empty()) {
+            add_edge(s, starts_[s], ends_[s], k * 2 * result_.sources[s].curve.half_mm);
+            continue;
+        }
         const std::vector<Passing> way = way_of(s);
         for (std::size_t i = 1; i < way.size(); ++i) {
             add_edge(s, way[i - 1].vertex, way[i].vertex,
