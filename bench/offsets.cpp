@@ -37,22 +37,24 @@ struct Arguments {
     bool polygons = true;
 };
 
-constexpr double chord_mm = 1e-3;
+// What a slit or a neck narrower than the chords are off becomes is a matter of luck: where the results differ, they are
+// compared again with finer chords.
+constexpr double coarse_chord_mm = 1e-3, fine_chord_mm = 1e-5;
 
 // The radius of a disc that may fit into the difference: for the chords of the region twice, for those of the library's
 // arcs and of ours once, and what ours are allowed.
-double apart_mm(const Arguments& arguments) {
+double apart_mm(double chord_mm, const Arguments& arguments) {
     return 4 * chord_mm + arguments.allowed_mm;
 }
 
 // Discs that fit into a difference are looked for from this radius on, each larger than the last by this factor.
-constexpr double least_disc_mm = 0.25e-3;
+constexpr double least_disc_mm = 0.1e-3;
 constexpr double disc_factor = 1.25;
 
 struct Totals {
-    std::size_t files = 0, unread = 0, layers = 0, segments = 0, offsets = 0;
+    std::size_t files = 0, unread = 0, layers = 0, crossed = 0, segments = 0, offsets = 0;
     std::size_t second_method = 0, unresolved = 0, slivers = 0;
-    std::size_t differ = 0, counts_differ = 0;
+    std::size_t finer = 0, differ = 0, counts_differ = 0;
     double ours_s = 0, polygons_s = 0, worst_area_mm = 0, worst_mm = 0;
     double longest_s = 0;
 };
@@ -61,7 +63,6 @@ struct Layer {
     std::string name;
     double z_mm;
     std::vector<Contour> region;
-    ClipperLib::Paths polygons;
 };
 
 void report(const Layer& layer, double distance_mm, const std::string& what) {
@@ -76,33 +77,59 @@ double widest_mm(const ClipperLib::Paths& polygons) {
     return radius;
 }
 
-void compare(const Layer& layer, const std::vector<Contour>& contours, double distance_mm,
-             const Arguments& arguments, Totals& totals) {
+struct Comparison {
+    double widest_mm = 0, area_mm = 0;  // the area of what is in one only, over the length
+    std::size_t our_count = 0, their_count = 0;
+    double library_s = 0;
+};
+
+Comparison compared(const Layer& layer, Region contours, double distance_mm, double chord_mm,
+                    const Arguments& arguments) {
+    Comparison result;
     ClipperLib::Paths theirs;
-    totals.polygons_s +=
-        time_of_s([&] { theirs = offset_polygons(layer.polygons, distance_mm, chord_mm); });
+    const ClipperLib::Paths region = polygons(layer.region, chord_mm);
+    result.library_s = time_of_s([&] { theirs = offset_polygons(region, distance_mm, chord_mm); });
     const ClipperLib::Paths ours = polygons(contours, chord_mm);
     const double length = (length_mm(ours) + length_mm(theirs)) / 2;
-    if (length == 0) return;
+    if (length == 0) return result;
     const ClipperLib::Paths difference = difference_of(ours, theirs);
-    const double wide_mm = widest_mm(difference);
-    totals.worst_area_mm = std::max(totals.worst_area_mm, area_mm2(difference) / length);
-    totals.worst_mm = std::max(totals.worst_mm, wide_mm);
-    if (wide_mm > disc_factor * apart_mm(arguments)) {
-        ++totals.differ;
-        report(layer, distance_mm, "a disc of " + number(1000 * wide_mm) + " um fits between them");
-    }
+    result.widest_mm = widest_mm(difference);
+    result.area_mm = area_mm2(difference) / length;
     // Of what is left without a margin: where parts touch, they may be one or two.
-    const double margin_mm = 2 * apart_mm(arguments);
+    const double margin_mm = 2 * apart_mm(chord_mm, arguments);
     const auto count = [&](const ClipperLib::Paths& paths) {
         return offset_polygons(paths, -margin_mm, margin_mm / 10).size();
     };
-    const std::size_t our_count = count(ours), their_count = count(theirs);
-    if (our_count != their_count) {
+    result.our_count = count(ours);
+    result.their_count = count(theirs);
+    return result;
+}
+
+void compare(const Layer& layer, Region contours, double distance_mm, const Arguments& arguments,
+             Totals& totals) {
+    double chord_mm = coarse_chord_mm;
+    Comparison found = compared(layer, contours, distance_mm, chord_mm, arguments);
+    totals.polygons_s += found.library_s;
+    const auto differ = [&] {
+        return found.widest_mm > disc_factor * apart_mm(chord_mm, arguments);
+    };
+    if (differ() || found.our_count != found.their_count) {
+        ++totals.finer;
+        chord_mm = fine_chord_mm;
+        found = compared(layer, contours, distance_mm, chord_mm, arguments);
+    }
+    totals.worst_area_mm = std::max(totals.worst_area_mm, found.area_mm);
+    totals.worst_mm = std::max(totals.worst_mm, found.widest_mm);
+    if (differ()) {
+        ++totals.differ;
+        report(layer, distance_mm,
+               "a disc of " + number(1000 * found.widest_mm) + " um fits between them");
+    }
+    if (found.our_count != found.their_count) {
         ++totals.counts_differ;
         report(layer, distance_mm,
-               std::to_string(our_count) + " contours, the library has " +
-                   std::to_string(their_count));
+               std::to_string(found.our_count) + " contours, the library has " +
+                   std::to_string(found.their_count));
     }
 }
 
@@ -157,12 +184,13 @@ void measure_file(const std::string& path, const Arguments& arguments, Totals& t
     const std::size_t taken = std::min(heights.size(), arguments.layers);
     for (std::size_t i = 0; i < taken; ++i) {
         const double z_mm = range.bottom_mm + heights[(2 * i + 1) * heights.size() / (2 * taken)];
-        Layer layer{std::filesystem::path(path).filename(),
-                    z_mm,
-                    slicer::region_of(cutter.cut(z_mm), tolerance).contours,
-                    {}};
+        const auto section = slicer::region_of(cutter.cut(z_mm), tolerance).contours;
+        // Where faces of the model overlap a little, the section crosses itself: no region, and each would make
+        // something else of it.
+        RegionResult region = cleaned(section, tolerance.unite_mm());
+        totals.crossed += region.changed;
+        const Layer layer{std::filesystem::path(path).filename(), z_mm, std::move(region.contours)};
         if (layer.region.empty()) continue;
-        if (arguments.polygons) layer.polygons = polygons(layer.region, chord_mm);
         measure(layer, arguments, totals);
     }
 }
@@ -175,10 +203,12 @@ void print(const Totals& totals) {
         {"what", "figure"},
         {{"files (and that cannot be read)", n(totals.files) + " (" + n(totals.unread) + ")"},
          {"layers, with segments", n(totals.layers) + ", " + n(totals.segments)},
+         {"of them, sections that cross themselves", n(totals.crossed)},
          {"offsets", n(totals.offsets)},
          {"by the second method", n(totals.second_method)},
          {"unresolved", n(totals.unresolved)},
          {"slivers left out", n(totals.slivers)},
+         {"compared with finer chords", n(totals.finer)},
          {"differ from the library's", n(totals.differ)},
          {"numbers of contours differ", n(totals.counts_differ)},
          {"greatest disc that fits between them (radius)", number(1000 * totals.worst_mm) + " um"},
