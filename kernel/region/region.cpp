@@ -44,6 +44,7 @@ struct Widths {
 
 struct AreaBounds {
     double least_mm2, most_mm2;
+    bool whole_operands = true;  // made of the operands' areas, not of those of parts of them
 };
 
 Contour turned(const Contour& contour, double angle_rad) {
@@ -125,15 +126,20 @@ Swept swept(std::span<const Input> inputs, const Inside& inside, double snap_mm)
     return {std::move(arrangement), std::move(sweep)};
 }
 
-// The bounds hold for regions that do not cross themselves; where one does, it winds around points the wrong way.
+// The bounds hold for regions that do not cross themselves. Where one winds around points the wrong way, or more than
+// once, its area is less than that of the points in it, or more.
 bool area_agrees(Region result, const Swept& swept, const Inside& inside, const AreaBounds& bounds,
                  double slack_mm2) {
     const auto& [arrangement, sweep] = swept;
     const double area = area_mm2(result);
     const double crossed =
         region::area_mm2(arrangement, sweep, [](const Winding& w) { return w.a < 0 || w.b < 0; });
+    const double repeated =
+        !bounds.whole_operands ? 0 : region::area_mm2(arrangement, sweep, [](const Winding& w) {
+            return std::max(0, w.a - 1) + std::max(0, w.b - 1);
+        });
     return std::abs(area - region::area_mm2(arrangement, sweep, inside)) <= slack_mm2 &&
-           area >= bounds.least_mm2 - crossed - slack_mm2 &&
+           area >= bounds.least_mm2 - crossed - repeated - slack_mm2 &&
            area <= bounds.most_mm2 + crossed + slack_mm2;
 }
 
@@ -242,7 +248,7 @@ std::vector<std::size_t> groups_of(std::span<const Region> regions, double allow
 
 RegionResult united_group(std::span<const Region> regions, const Widths& widths) {
     std::vector<Input> inputs;
-    AreaBounds bounds{0, 0};
+    AreaBounds bounds{0, 0, false};
     for (const Region& region : regions) {
         const double area = area_mm2(region);
         bounds.least_mm2 = std::max(bounds.least_mm2, area);

@@ -81,11 +81,11 @@ bool is_closed(const Sweep& sweep) {
                        [](const SweptEdge& edge) { return !edge.kept || edge.next != none; });
 }
 
-double area_mm2(const Arrangement& arrangement, const Sweep& sweep, const Inside& inside) {
+double area_mm2(const Arrangement& arrangement, const Sweep& sweep, const Counts& counts) {
     double area = 0;
     const std::vector<Point2>& points = arrangement.vertices;
     for (const SweptEdge& edge : sweep.edges) {
-        const int rises = inside(edge.left) - inside(edge.right);
+        const int rises = counts(edge.left) - counts(edge.right);
         if (rises == 0) continue;
         const Vector2 low = points[edge.low] - points.front();
         const Vector2 high = points[edge.high] - points.front();

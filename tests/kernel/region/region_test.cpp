@@ -209,3 +209,19 @@ TEST_CASE("region 3: what nothing touches passes untouched, nested or not") {
     CHECK(!unite_all({}, allowed_mm).changed);
     CHECK(unite_all({{}, {}}, allowed_mm).contours.empty());
 }
+
+TEST_CASE(
+    "region 6: parts of an operand that lie over each other are no reason to refuse a result") {
+    Contours pile;
+    for (int i = 0; i < 5; ++i) pile.push_back(rectangle(0.1 * i, 0, 10 + 0.1 * i, 10));
+    const Contours other{rectangle(5, 5, 20, 8)};
+    for (const auto& [operation, area] :
+         {std::pair{Operation::unite, 104.0 + 9.6 * 3}, std::pair{Operation::intersect, 5.4 * 3},
+          std::pair{Operation::subtract, 104.0 - 5.4 * 3}}) {
+        const RegionResult result = combined(pile, other, operation, allowed_mm);
+        CHECK(result.unresolved == 0);
+        CHECK(total_area(result.contours) == doctest::Approx(area).epsilon(1e-9));
+    }
+    const RegionResult exchanged = combined(other, pile, Operation::unite, allowed_mm);
+    CHECK(exchanged.unresolved == 0);
+}
