@@ -116,6 +116,16 @@ int winding_of(const BoundaryPiece& piece, const Point2& point) {
 
 }  // namespace
 
+// From the middle, as far as which numbers are most exact.
+BoundaryPlace BoundaryPiece::at(double fraction) const {
+    const double along_mm = (fraction - 0.5) * length_mm, turn = curvature_per_mm * along_mm;
+    if (turn == 0) return {middle + along_mm * middle_tangent, middle_tangent};
+    const double sine = std::sin(turn), cosine = std::cos(turn), half_sine = std::sin(turn / 2);
+    const Vector2 left = left_of(middle_tangent);
+    return {middle + (sine * middle_tangent + 2 * half_sine * half_sine * left) / curvature_per_mm,
+            cosine * middle_tangent + sine * left};
+}
+
 double BoundaryPiece::distance_mm(const Point2& point) const {
     const bool before = (point - start).dot(start_tangent) < 0;
     const bool after = (point - end).dot(end_tangent) > 0;

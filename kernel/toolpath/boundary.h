@@ -18,6 +18,11 @@
 
 namespace lyr {
 
+struct BoundaryPlace {
+    Point2 point;
+    Vector2 tangent;  // unit
+};
+
 // A segment, or a full circle, which has no ends.
 struct BoundaryPiece {
     Point2 start, end;
@@ -31,6 +36,7 @@ struct BoundaryPiece {
     bool is_wide = false;  // more than half a circle
 
     Carrier carrier() const { return {start, start_tangent, curvature_per_mm}; }
+    BoundaryPlace at(double fraction) const;
     double distance_mm(const Point2& point) const;
 };
 

@@ -23,6 +23,11 @@ constexpr double pi = std::numbers::pi;
 constexpr double disc_share = 4;
 constexpr double boundary_share = 2;
 
+// Places beside a segment where the result's boundary is looked for are so far apart, in distances, and no more than so
+// many: what lies between two of them may be lost unseen.
+constexpr double apart_share = 2;
+constexpr double most_places = 9;
+
 // Segments that meet at a smaller angle have no corner: what is beside it is beside their middles too.
 constexpr double smooth_rad = 1e-3;
 
@@ -80,8 +85,10 @@ private:
     double covered_around(const BoundaryPiece& before, const BoundaryPiece& after) const;
     double covered_mm2() const;
     Fault wrong_area() const;
+    bool may_be_mitred(const Point2& point) const;
     Fault missing_beside(const Point2& place, const Vector2& towards,
                          std::vector<bool>::reference counted) const;
+    double places_beside(const BoundaryPiece& piece) const;
     Fault missing() const;
 
     const OffsetRequest& request_;
@@ -186,23 +193,56 @@ Check::Fault Check::wrong_area() const {
     return OffsetFault{Kind::area, contours_.empty() ? Point2::Zero() : start_of(contours_[0])};
 }
 
+// Whether the mitre at some corner may cover the point, or one as deep in the offset as is asked for. No part of the
+// region's boundary is nearer than the distance.
+bool Check::may_be_mitred(const Point2& point) const {
+    if (request_.corner != Corner::mitre) return false;
+    const double margin_mm = (1 + disc_share) * slack_mm_;
+    const double within_mm = distance_mm_ + margin_mm, turn = outwards_ ? 1 : -1;
+    bool mitred = false;
+    for_neighbours(source_.pieces(), [&](const BoundaryPiece& before, const BoundaryPiece& piece) {
+        if (mitred || piece.is_circle) return;
+        const Vector2 one = across(before.end_tangent), other = across(piece.start_tangent);
+        const Vector2 from_corner = point - piece.start;
+        mitred = (cross(before.end_tangent, piece.start_tangent) > 0) == outwards_ &&
+                 from_corner.dot(one) <= within_mm && from_corner.dot(other) <= within_mm &&
+                 turn * cross(one, from_corner) >= -margin_mm &&
+                 turn * cross(from_corner, other) >= -margin_mm &&
+                 from_corner.norm() <= mitred_mm_ + margin_mm;
+    });
+    return mitred;
+}
+
 // The disc around a point deep in the offset, up to the place it is beside, has no boundary of the region in it, or
-// nothing is asked. Then on the way to the place is the offset's boundary, at the distance. Where mitres may have moved
-// it, and once a contour, the result is asked how often it winds around the point instead.
+// nothing is asked. Then on the way there from the place, the middle of which is surely not in the offset, is the
+// offset's boundary: at the distance. Windings are counted once a contour.
 Check::Fault Check::missing_beside(const Point2& place, const Vector2& towards,
                                    std::vector<bool>::reference counted) const {
-    const double reach_mm = mitred_mm_ + disc_share * slack_mm_;
+    const double reach_mm = distance_mm_ + disc_share * slack_mm_;
     const Point2 deep = place + reach_mm * towards;
     if (source_.is_near(deep, reach_mm - resolution_mm)) return std::nullopt;
-    const bool found =
-        !counted || mitred_mm_ > distance_mm_
-            // Outwards, the other side of the boundary is what may be missing: a hole.
-            ? result_.winding(deep) == (outwards_ ? 0 : 1)
-            : result_.is_near(place + distance_mm_ * towards, boundary_share * slack_mm_);
-    counted = true;
+    const Point2 expected = place + distance_mm_ * towards;
+    bool found = result_.is_near(expected, boundary_share * slack_mm_);
+    if (found && !counted) {
+        // Outwards, the offset is what the result leaves.
+        const int in = outwards_ ? 0 : 1;
+        found = result_.winding(deep) == in &&
+                result_.winding(place + distance_mm_ / 2 * towards) == 1 - in;
+        counted = true;
+    }
     // Where the region's boundary touches itself, the point may be on another side than the place's.
-    if (found || (source_.winding(deep) > 0) == outwards_) return std::nullopt;
-    return OffsetFault{Kind::incomplete, deep};
+    if (found || (source_.winding(deep) > 0) == outwards_ || may_be_mitred(expected)) {
+        return std::nullopt;
+    }
+    return OffsetFault{Kind::incomplete, expected};
+}
+
+// An odd number, so that the middle is one.
+double Check::places_beside(const BoundaryPiece& piece) const {
+    const double turned = outwards_ ? piece.curvature_per_mm : -piece.curvature_per_mm;
+    const double beside_mm = piece.length_mm * std::max(0.0, 1 + turned * distance_mm_);
+    const double pairs = std::floor(beside_mm / (2 * apart_share * distance_mm_));
+    return std::min(most_places, 1 + 2 * pairs);
 }
 
 Check::Fault Check::missing() const {
@@ -212,7 +252,11 @@ Check::Fault Check::missing() const {
         if (!found) found = missing_beside(place, across(tangent), counted[piece.contour]);
     };
     for_neighbours(source_.pieces(), [&](const BoundaryPiece& before, const BoundaryPiece& piece) {
-        look(piece, piece.middle, piece.middle_tangent);
+        const double places = places_beside(piece);
+        for (double i = 0.5; i < places; ++i) {
+            const BoundaryPlace place = piece.at(i / places);
+            look(piece, place.point, place.tangent);
+        }
         const Vector2 middle = before.end_tangent + piece.start_tangent;
         const double turn = std::abs(cross(before.end_tangent, piece.start_tangent));
         if (piece.is_circle || turn < smooth_rad || middle.norm() < cusp_rad) return;

@@ -6,9 +6,9 @@
 //  2. every contour has the material on its left: beside it, the others wind as often as they have to;
 //  3. the area is within bounds that hold for every offset: the region's and what each segment and each corner can
 //     cover, and the inequality of Brunn and Minkowski;
-//  4. nothing is missing: beside the middle of every segment and at every corner, where no other part of the region's
-//     boundary is as near, the result has a boundary at the distance (where corners are mitred: beyond it is the
-//     offset).
+//  4. nothing is missing: beside some places of every segment, its middle among them, and at every corner the result has
+//     a boundary at the distance, unless another part of the region's boundary is as near (or a mitre). So what is lost
+//     unseen is smaller than the places are apart, some distances.
 // What is found is the first that is wrong.
 
 #pragma once
