@@ -48,11 +48,13 @@ void for_neighbours(const std::vector<BoundaryPiece>& pieces, Take take) {
     }
 }
 
+// In the order of the contours. Segments without length are left out.
+std::vector<BoundaryPiece> boundary_pieces(Region region);
+
 class Boundary {
 public:
     explicit Boundary(Region region);
 
-    // In the order of the contours. Segments without length are left out.
     const std::vector<BoundaryPiece>& pieces() const { return pieces_; }
     double distance_mm(const Point2& point, double within_mm) const;
     int winding(const Point2& point) const;
