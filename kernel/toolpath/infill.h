@@ -12,6 +12,8 @@
 //  5. At density 1 patterns that cross themselves are rectilinear.
 //  6. Where nothing can be made of a request, because numbers are not finite or out of range, or an offset could not be
 //     settled, `unresolved` counts it.
+//  7. Between dense lines and the boundary no gap is wider than half their spacing, and none of its parts is empty but
+//     those that are points (`left_out`).
 
 #pragma once
 
@@ -49,6 +51,7 @@ struct Fill {
     std::vector<HatchRun> runs{};
     std::vector<Strand> strands{};
     std::size_t unresolved = 0;
+    std::size_t left_out = 0;
 };
 
 // Between strands that lie side by side without a gap.

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <utility>
 
+#include "kernel/toolpath/row_gaps.h"
 #include "kernel/toolpath/strand_links.h"
 
 namespace lyr {
@@ -19,8 +20,13 @@ constexpr double cubic_slope = std::numbers::sqrt2 / 2;
 // travels.
 constexpr double stray_share = 0.05;
 
-// Links of runs, in spacings: along a boundary that leans by 11 degrees against the rows.
-constexpr double longest_straight_link = 5;
+// Links of runs, in spacings: along a boundary that leans by 2 degrees against the rows. Between two rows a link goes
+// astray nowhere; a travel of that length would cost more.
+constexpr double longest_straight_link = 25;
+
+// Gaps beside the last row are filled if they are wider than this many spacings: then what is too much there is no more
+// than what would be missing.
+constexpr double widest_gap = 0.5;
 
 // Links of strands, in spacings of the pattern: along a boundary that leans by 15 degrees against the rows. Longer ones
 // would print as much as the lines that they save a travel between.
@@ -63,6 +69,12 @@ void fill_with_runs(std::span<const BoundaryPiece> boundary, const RowGrid& grid
                                   .shortest_mm = request.allowed_mm});
     fill.runs.insert(fill.runs.end(), std::make_move_iterator(runs.begin()),
                      std::make_move_iterator(runs.end()));
+    GapLines gaps = gap_lines(
+        boundary, rows, {.beyond_mm = widest_gap * grid.pitch_mm, .shortest_mm = request.width_mm});
+    for (Path& path : gaps.paths) {
+        fill.strands.push_back({.path = std::move(path), .width_mm = request.width_mm});
+    }
+    fill.left_out += gaps.islands_left_out;
 }
 
 void fill_with_strands(std::span<const BoundaryPiece> boundary, std::span<const RowGrid> grids,

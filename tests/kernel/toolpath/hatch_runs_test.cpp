@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include "kernel/region/regions.h"
+#include "kernel/toolpath/fills.h"
 
 using namespace lyr;
 using namespace lyr::testing;
@@ -23,13 +24,6 @@ Filled fill(const Contours& region, double angle_rad, double pitch_mm) {
     Filled filled{rows_across(boundary, {.angle_rad = angle_rad, .pitch_mm = pitch_mm}), {}};
     filled.runs = hatch_runs(filled.rows, limits);
     return filled;
-}
-
-Point2 row_end(const HatchRun& run, std::size_t row, bool last) {
-    const Vector2 left(-run.direction.y(), run.direction.x());
-    const bool along = row % 2 == 0;
-    const double at = along == last ? run.rows[row].end_mm : run.rows[row].start_mm;
-    return at * run.direction + (run.offset_mm + static_cast<double>(row) * run.pitch_mm) * left;
 }
 
 std::size_t links(const std::vector<HatchRun>& runs) {

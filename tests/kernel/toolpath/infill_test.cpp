@@ -4,9 +4,9 @@
 
 #include <doctest/doctest.h>
 
-#include <functional>
-
 #include "kernel/region/regions.h"
+#include "kernel/toolpath/fills.h"
+#include "kernel/toolpath/offset.h"
 
 using namespace lyr;
 using namespace lyr::testing;
@@ -33,54 +33,6 @@ InfillRequest request(InfillPattern pattern, double density, double angle_rad = 
             .allowed_mm = allowed_mm};
 }
 
-Point2 row_end(const HatchRun& run, std::size_t row, bool last) {
-    const Vector2 left(-run.direction.y(), run.direction.x());
-    const bool along = row % 2 == 0;
-    const double at = along == last ? run.rows[row].end_mm : run.rows[row].start_mm;
-    return at * run.direction + (run.offset_mm + static_cast<double>(row) * run.pitch_mm) * left;
-}
-
-struct Line {
-    Point2 start;
-    Segment segment;
-    bool is_link = false;  // of a run
-};
-
-// All that is printed; a full circle as two halves.
-std::vector<Line> lines_of(const Fill& fill) {
-    std::vector<Line> lines;
-    for (const HatchRun& run : fill.runs) {
-        for (std::size_t i = 0; i < run.rows.size(); ++i) {
-            const Point2 start = row_end(run, i, false);
-            if (run.rows[i].linked) lines.push_back({row_end(run, i - 1, true), {start}, true});
-            lines.push_back({start, {row_end(run, i, true)}});
-        }
-    }
-    for (const Strand& strand : fill.strands) {
-        if (const auto* circle = std::get_if<FullCircle>(&strand.path)) {
-            const Vector2 radius(circle->radius_mm, 0);
-            const double turn = circle->counter_clockwise ? pi : -pi;
-            const Point2 right = circle->centre + radius, left = circle->centre - radius;
-            lines.push_back({right, arc_with_sweep(right, left, turn)});
-            lines.push_back({left, arc_with_sweep(left, right, turn)});
-            continue;
-        }
-        const Path& path = std::get<Path>(strand.path);
-        Point2 from = path.start;
-        for (const Segment& segment : path.segments) {
-            lines.push_back({from, segment});
-            from = segment.end;
-        }
-    }
-    return lines;
-}
-
-double length_mm(const Fill& fill) {
-    double length = 0;
-    for (const Line& line : lines_of(fill)) length += lyr::length_mm(line.start, line.segment);
-    return length;
-}
-
 std::size_t pieces(const Fill& fill) {
     return fill.runs.size() + fill.strands.size();
 }
@@ -89,7 +41,7 @@ std::size_t pieces(const Fill& fill) {
 void check_inside(const Contours& region, const Fill& fill) {
     const Boundary boundary(region);
     constexpr double step_mm = 0.3;
-    for (const Line& line : lines_of(fill)) {
+    for (const PrintedLine& line : lines_of(fill)) {
         const double length = lyr::length_mm(line.start, line.segment);
         const int steps = 2 + static_cast<int>(length / step_mm);
         const double within = line.is_link ? stray_mm : allowed_mm;
@@ -189,10 +141,10 @@ TEST_CASE("infill 3: lines are in register whatever the region is") {
         const auto all = lines_of(infill(large, request(pattern, 0.2)));
         const auto some = lines_of(infill(small, request(pattern, 0.2)));
         CHECK(some.size() > 3);
-        for (const Line& line : some) {
+        for (const PrintedLine& line : some) {
             const Point2 middle = point_at(line.start, line.segment, 0.5);
             if (distance_to(small, middle) < 1e-6) continue;  // a link
-            const bool found = std::any_of(all.begin(), all.end(), [&](const Line& other) {
+            const bool found = std::any_of(all.begin(), all.end(), [&](const PrintedLine& other) {
                 return distance_mm(other.start, other.segment, middle) < 1e-9;
             });
             CHECK(found);
@@ -205,11 +157,59 @@ TEST_CASE("infill 4: few travels") {
     const Contours circle{FullCircle{{1, 2}, 30, true}};
     for (const double angle : {0.0, 0.3, pi / 4}) {
         for (const Contours& region : {square, circle}) {
-            CHECK(pieces(infill(region, request(InfillPattern::rectilinear, 1, angle))) <= 1);
+            const Fill solid = infill(region, request(InfillPattern::rectilinear, 1, angle));
+            CHECK(solid.runs.size() == 1);
+            CHECK(solid.strands.size() <= 2);  // gaps
             CHECK(pieces(infill(region, request(InfillPattern::rectilinear, 0.15, angle))) <= 3);
             CHECK(pieces(infill(region, request(InfillPattern::grid, 0.15, angle))) <= 5);
             CHECK(pieces(infill(region, request(InfillPattern::triangles, 0.15, angle))) <= 6);
             CHECK(pieces(infill(region, request(InfillPattern::cubic, 0.15, angle))) <= 6);
+        }
+    }
+}
+
+TEST_CASE("infill 7: solid fill covers what it is to fill") {
+    const Contours square{rectangle(0, 0, 25, 25)};
+    const Contours ring{FullCircle{{0, 0}, 15, true}, FullCircle{{0, 1}, 5, false}};
+    for (const double angle : {0.0, 0.1, pi / 4, 2.0}) {
+        for (const Contours& region : {square, ring}) {
+            const Contours whole = offset(region, {width_mm / 2, 1e-4}).contours;
+            const Fill fill = infill(region, request(InfillPattern::rectilinear, 1, angle));
+            CAPTURE(angle);
+            CHECK(covered_share(whole, fill, width_mm) > 0.987);
+        }
+    }
+}
+
+TEST_CASE(
+    "infill 7: no gap beside a row is wider than half a spacing, in all places of the plane") {
+    const double spacing = line_spacing_mm(width_mm, height_mm);
+    for (int i = 0; i < 20; ++i) {
+        // Along the rows lie all sides but two of the notch, whose bottom is a dent, and an island that is narrower than
+        // the rows are apart.
+        const Motion motion{.angle_rad = 0, .shift = {0, 0.05 * i * spacing}};
+        const Contours region = moved({Path{{0, 0},
+                                            {{{20, 0}},
+                                             {{20, 8}},
+                                             {{14, 8}},
+                                             {{14, 4}},
+                                             {{6, 4}},
+                                             {{6, 8}},
+                                             {{0, 8}},
+                                             {{0, 0}}}},
+                                       rectangle(8, 6, 12, 6.2)},
+                                      motion);
+        const Fill fill = infill(region, request(InfillPattern::aligned, 1, 0));
+        check_inside(region, fill);
+        for (const Point2& edge :
+             {Point2(10, 0), Point2(3, 8), Point2(17, 8), Point2(10, 4), Point2(10, 6.1)}) {
+            const Point2 at = motion(edge);
+            double nearest = 1e9;
+            for (const PrintedLine& line : lines_of(fill))
+                nearest = std::min(nearest, distance_mm(line.start, line.segment, at));
+            CAPTURE(i);
+            CAPTURE(edge.y());
+            CHECK(nearest <= spacing / 2 + 1e-9);
         }
     }
 }
@@ -227,7 +227,7 @@ TEST_CASE("infill: rectilinear alternates, aligned does not, cubes move with the
     InfillRequest low = request(cubic, 0.1, 0), high = low;
     high.z_mm += 1;
     const auto row = [&](const InfillRequest& of) {
-        for (const Line& line : lines_of(infill(square, of))) {
+        for (const PrintedLine& line : lines_of(infill(square, of))) {
             const Point2& end = line.segment.end;
             if (std::abs(line.start.y() - end.y()) < 1e-9 && std::abs(end.y()) < 9) return end.y();
         }
