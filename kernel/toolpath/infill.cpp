@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "kernel/region/verify.h"
+#include "kernel/toolpath/infill_concentric.h"
 #include "kernel/toolpath/infill_lines.h"
 
 namespace lyr {
@@ -40,6 +41,10 @@ Fill infill(Region inside, const InfillRequest& asked) {
     InfillRequest request = asked;
     if (request.density == 1 && crosses_itself(request.pattern))
         request.pattern = InfillPattern::rectilinear;
+    if (request.pattern == InfillPattern::concentric) {
+        fill_with_offsets(inside, request, fill);
+        return fill;
+    }
     const std::vector<BoundaryPiece> boundary = boundary_pieces(inside);
     const std::vector<RowGrid> grids = row_grids(request);
     const double spacing_mm = line_spacing_mm(request.width_mm, request.height_mm);

@@ -18,8 +18,8 @@ constexpr double width_mm = 0.45, height_mm = 0.2;
 constexpr double stray_mm = allowed_mm + width_mm / 20;
 
 constexpr InfillPattern patterns[] = {InfillPattern::rectilinear, InfillPattern::aligned,
-                                      InfillPattern::grid, InfillPattern::triangles,
-                                      InfillPattern::cubic};
+                                      InfillPattern::grid,        InfillPattern::triangles,
+                                      InfillPattern::cubic,       InfillPattern::concentric};
 
 InfillRequest request(InfillPattern pattern, double density, double angle_rad = pi / 4,
                       std::size_t layer = 0) {
@@ -138,6 +138,7 @@ TEST_CASE("infill 2: no line leaves random regions") {
 TEST_CASE("infill 3: lines are in register whatever the region is") {
     const Contours large{rectangle(-40, -40, 40, 40)}, small{rectangle(-3, 1, 7, 9)};
     for (const InfillPattern pattern : patterns) {
+        if (pattern == InfillPattern::concentric) continue;  // follows the region
         const auto all = lines_of(infill(large, request(pattern, 0.2)));
         const auto some = lines_of(infill(small, request(pattern, 0.2)));
         CHECK(some.size() > 3);
@@ -150,6 +151,25 @@ TEST_CASE("infill 3: lines are in register whatever the region is") {
             CHECK(found);
         }
     }
+}
+
+TEST_CASE(
+    "infill: concentric strands are as deep in the region as they should be, and circles stay "
+    "circles") {
+    const Contours region{rectangle(-10, -10, 10, 10), FullCircle{{1, 2}, 3, false}};
+    const double spacing = line_spacing_mm(width_mm, height_mm);
+    const Fill fill = infill(region, request(InfillPattern::concentric, 0.25));
+    std::size_t circles = 0;
+    for (const PrintedLine& line : lines_of(fill)) {
+        const double depth = distance_to(region, point_at(line.start, line.segment, 0.3));
+        const double loops = (depth - 1.5 * spacing) / (4 * spacing);
+        CHECK(std::abs(loops - std::round(loops)) < 0.01);
+    }
+    for (const Strand& strand : fill.strands) {
+        const auto* circle = std::get_if<FullCircle>(&strand.path);
+        circles += circle && circle->centre == Point2(1, 2);
+    }
+    CHECK(circles > 0);
 }
 
 TEST_CASE("infill 4: few travels") {
