@@ -59,6 +59,12 @@ public:
     double distance_mm(const Point2& point, double within_mm) const;
     int winding(const Point2& point) const;
 
+    // Calls take(index) for every piece whose box meets this one.
+    template <class Take>
+    void meeting(const region::Box2& box, Take take) const {
+        tree_.meeting(box, take);
+    }
+
 private:
     std::vector<BoundaryPiece> pieces_;
     region::BoxTree tree_;

@@ -7,6 +7,7 @@
 #include "kernel/region/verify.h"
 #include "kernel/toolpath/infill_concentric.h"
 #include "kernel/toolpath/infill_lines.h"
+#include "kernel/toolpath/infill_waves.h"
 
 namespace lyr {
 namespace {
@@ -43,6 +44,12 @@ Fill infill(Region inside, const InfillRequest& asked) {
         request.pattern = InfillPattern::rectilinear;
     if (request.pattern == InfillPattern::concentric) {
         fill_with_offsets(inside, request, fill);
+        return fill;
+    }
+    if (request.pattern == InfillPattern::honeycomb || request.pattern == InfillPattern::gyroid) {
+        const bool gyroid = request.pattern == InfillPattern::gyroid;
+        fill_with_waves(inside, gyroid ? gyroid_waves(request) : honeycomb_waves(request), request,
+                        fill);
         return fill;
     }
     const std::vector<BoundaryPiece> boundary = boundary_pieces(inside);

@@ -28,10 +28,6 @@ constexpr double longest_straight_link = 25;
 // than what would be missing.
 constexpr double widest_gap = 0.5;
 
-// Links of strands, in spacings of the pattern: along a boundary that leans by 15 degrees against the rows. Longer ones
-// would print as much as the lines that they save a travel between.
-constexpr double longest_link = 4;
-
 }  // namespace
 
 std::vector<RowGrid> row_grids(const InfillRequest& request) {

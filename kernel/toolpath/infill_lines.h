@@ -8,6 +8,10 @@
 
 namespace lyr {
 
+// Links of strands, in spacings of the pattern: along a boundary that leans by 15 degrees against straight rows. Longer
+// ones would print as much as the lines that they save a travel between.
+inline constexpr double longest_link = 4;
+
 // One grid a direction; none for a pattern that is not made of straight lines.
 std::vector<RowGrid> row_grids(const InfillRequest& request);
 

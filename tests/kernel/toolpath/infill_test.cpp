@@ -83,6 +83,8 @@ TEST_CASE("infill 1: the volume is density times area times height, whatever the
     const Contours square{rectangle(-200, -200, 200, 200)};
     const double area = total_area(square), spacing = line_spacing_mm(width_mm, height_mm);
     for (const InfillPattern pattern : patterns) {
+        // Its layers differ; infill_waves_test.cpp takes the mean of all heights.
+        if (pattern == InfillPattern::gyroid) continue;
         for (const double density : {0.35, 0.6}) {
             double sum = 0;
             constexpr int layers = 4;
