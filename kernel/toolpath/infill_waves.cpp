@@ -49,6 +49,12 @@ Range steps_to_meet(double low, double high, double from, double to, double step
     return {std::ceil((low - to) / step), std::floor((high - from) / step)};
 }
 
+bool is_short(const Path& path, double length_mm) {
+    return std::all_of(path.segments.begin(), path.segments.end(), [&](const Segment& segment) {
+        return (segment.end - path.start).norm() < length_mm;
+    });
+}
+
 class Tiling {
 public:
     Tiling(const WavePattern& pattern, const region::Box2& box)
@@ -80,6 +86,8 @@ private:
             return Point2(at.x() * x_ + at.y() * Vector2(-x_.y(), x_.x()));
         };
         Path path{placed(wave.start, periods.first), {}};
+        const auto count = static_cast<std::size_t>(periods.last - periods.first + 1);
+        path.segments.reserve(count * wave.segments.size());
         for (double period = periods.first; period <= periods.last; ++period) {
             for (const Segment& segment : wave.segments) {
                 path.segments.push_back({placed(segment.end, period), segment.sagitta_mm});
@@ -103,8 +111,7 @@ void fill_with_waves(Region inside, const WavePattern& pattern, const InfillRequ
     std::vector<OpenStrand> strands;
     Tiling(pattern, box_across(boundary.pieces(), direction)).strands([&](const Path& path) {
         for (PathPart& part : clipped(path, boundary)) {
-            const bool is_open = part.start && part.end && !part.path.segments.empty();
-            if (!is_open || length_mm(Contour(part.path)) < request.allowed_mm) continue;
+            if (!part.start || !part.end || is_short(part.path, request.allowed_mm)) continue;
             strands.push_back({*part.start, *part.end, std::move(part.path.segments)});
         }
     });
