@@ -140,12 +140,24 @@ private:
         const Point2 from(end.x_mm, rows_.y_mm(row));
         const auto above = curve_above(row, end.curve, right);
         if (!above) return std::nullopt;
-        for (Index i = rows_.row_start[row + 1]; i < rows_.row_start[row + 2]; ++i) {
-            const RowEnd& other = right ? rows_.spans[i].end : rows_.spans[i].start;
-            if (other.curve != *above) continue;
-            const Point2 to(other.x_mm, rows_.y_mm(row + 1));
-            return is_safe(row, {from, end.curve}, {to, *above}, right) ? std::optional(i)
-                                                                        : std::nullopt;
+        const Point2 to(crossing_x_mm(rows_.curves[*above], rows_.y_mm(row + 1)),
+                        rows_.y_mm(row + 1));
+        const auto next = span_ending_at(row + 1, to.x(), *above, right);
+        if (!next || !is_safe(row, {from, end.curve}, {to, *above}, right)) return std::nullopt;
+        return next;
+    }
+
+    // The interval of a row that has its right or left end at a crossing.
+    std::optional<Index> span_ending_at(Index row, double x_mm, Index curve, bool right) const {
+        const auto end = [&](const RowSpan& span) -> const RowEnd& {
+            return right ? span.end : span.start;
+        };
+        const auto spans = rows_.spans_of(row);
+        auto span = std::lower_bound(spans.begin(), spans.end(), x_mm,
+                                     [&](const RowSpan& of, double x) { return end(of).x_mm < x; });
+        for (; span != spans.end() && end(*span).x_mm == x_mm; ++span) {
+            if (end(*span).curve == curve)
+                return rows_.row_start[row] + static_cast<Index>(span - spans.begin());
         }
         return std::nullopt;
     }
@@ -215,14 +227,15 @@ private:
 
     std::optional<Index> only_overlap(Index row, Index span) const {
         const RowSpan& with = rows_.spans[span];
-        std::optional<Index> found;
-        for (Index i = rows_.row_start[row]; i < rows_.row_start[row + 1]; ++i) {
-            const RowSpan& other = rows_.spans[i];
-            if (other.end.x_mm <= with.start.x_mm || other.start.x_mm >= with.end.x_mm) continue;
-            if (found) return std::nullopt;
-            found = i;
-        }
-        return found;
+        const auto spans = rows_.spans_of(row);
+        const auto first =
+            std::lower_bound(spans.begin(), spans.end(), with.start.x_mm,
+                             [](const RowSpan& of, double x) { return of.end.x_mm <= x; });
+        const auto overlaps = [&](auto at) {
+            return at != spans.end() && at->start.x_mm < with.end.x_mm;
+        };
+        if (!overlaps(first) || overlaps(first + 1)) return std::nullopt;
+        return rows_.row_start[row] + static_cast<Index>(first - spans.begin());
     }
 
     const Rows& rows_;

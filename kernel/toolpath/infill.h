@@ -8,7 +8,7 @@
 //     the width, everything else by no more than `allowed_mm`.
 //  3. Lines are in register: the same place has the same line whatever the region is.
 //  4. Straight, dense lines are runs, everything else is strands, linked along the region's boundary where the
-//     way is short. Every line is in the result once.
+//     way is short. Every line is in the result once; those shorter than `allowed_mm` are left out.
 //  5. At density 1 patterns that cross themselves are rectilinear.
 //  6. Where nothing can be made of a request, because numbers are not finite or out of range, or an offset could not be
 //     settled, `unresolved` counts it.
@@ -51,7 +51,7 @@ struct Fill {
     std::vector<HatchRun> runs{};
     std::vector<Strand> strands{};
     std::size_t unresolved = 0;
-    std::size_t left_out = 0;
+    std::size_t left_out = 0;  // see 7; of concentric fill, parts narrower than `allowed_mm`
 };
 
 // Between strands that lie side by side without a gap.

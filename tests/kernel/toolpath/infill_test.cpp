@@ -236,6 +236,20 @@ TEST_CASE(
     }
 }
 
+TEST_CASE("infill 7: a region that lies between two rows is not empty, whatever its place") {
+    for (int i = 0; i < 10; ++i) {
+        for (const double angle : {0.0, 0.7}) {
+            const Contours thin{rectangle(3, 5 + 0.04 * i, 9, 5.02 + 0.04 * i)};
+            const Fill along = infill(thin, request(InfillPattern::aligned, 1, angle));
+            CHECK(pieces(along) > 0);
+            check_inside(thin, along);
+        }
+        const Contours point{FullCircle{{1, 5 + 0.04 * i}, 0.01, true}};
+        const Fill dot = infill(point, request(InfillPattern::aligned, 1, 0.3));
+        CHECK(pieces(dot) + dot.left_out == 1);
+    }
+}
+
 TEST_CASE("infill: rectilinear alternates, aligned does not, cubes move with the height") {
     const Contours square{rectangle(-10, -10, 10, 10)};
     const auto direction = [&](InfillPattern pattern, std::size_t layer) {
