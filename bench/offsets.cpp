@@ -123,7 +123,7 @@ void measure_file(const std::string& path, const Arguments& arguments, Totals& t
         return;
     }
     ++totals.files;
-    const Cutter cutter(*model, options.tolerance);
+    const Cutter cutter(*model, options.tolerance());
     const HeightRange range = cutter.height_range();
     const auto heights =
         slicer::layer_middles(range.top_mm - range.bottom_mm, arguments.layer_height_mm);
@@ -132,7 +132,7 @@ void measure_file(const std::string& path, const Arguments& arguments, Totals& t
         const double z_mm = range.bottom_mm + heights[(2 * i + 1) * heights.size() / (2 * taken)];
         Layer layer{std::filesystem::path(path).filename(),
                     z_mm,
-                    slicer::region_of(cutter.cut(z_mm), options.tolerance).contours,
+                    slicer::region_of(cutter.cut(z_mm), options.tolerance()).contours,
                     {}};
         if (layer.region.empty()) continue;
         if (arguments.polygons) layer.polygons = polygons(layer.region, chord_mm);
