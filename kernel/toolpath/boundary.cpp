@@ -48,24 +48,6 @@ BoundaryPiece piece_of(const Point2& start, const Segment& segment, std::uint32_
             .is_wide = s * s > half2};
 }
 
-std::vector<BoundaryPiece> pieces_of(Region region) {
-    std::vector<BoundaryPiece> pieces;
-    for (std::uint32_t c = 0; c < region.size(); ++c) {
-        if (const auto* circle = std::get_if<FullCircle>(&region[c])) {
-            pieces.push_back(piece_of(*circle, c));
-            continue;
-        }
-        const Path& path = std::get<Path>(region[c]);
-        Point2 from = path.start;
-        for (const Segment& segment : path.segments) {
-            if (segment.end == from) continue;
-            pieces.push_back(piece_of(from, segment, c));
-            from = segment.end;
-        }
-    }
-    return pieces;
-}
-
 region::Box2 circle_box(const BoundaryPiece& piece) {
     const double radius = 1 / piece.curvature_per_mm;
     const Point2 centre = piece.start + radius * left_of(piece.start_tangent);
@@ -126,6 +108,24 @@ BoundaryPlace BoundaryPiece::at(double fraction) const {
             cosine * middle_tangent + sine * left};
 }
 
+std::vector<BoundaryPiece> boundary_pieces(Region region) {
+    std::vector<BoundaryPiece> pieces;
+    for (std::uint32_t c = 0; c < region.size(); ++c) {
+        if (const auto* circle = std::get_if<FullCircle>(&region[c])) {
+            pieces.push_back(piece_of(*circle, c));
+            continue;
+        }
+        const Path& path = std::get<Path>(region[c]);
+        Point2 from = path.start;
+        for (const Segment& segment : path.segments) {
+            if (segment.end == from) continue;
+            pieces.push_back(piece_of(from, segment, c));
+            from = segment.end;
+        }
+    }
+    return pieces;
+}
+
 double BoundaryPiece::distance_mm(const Point2& point) const {
     const bool before = (point - start).dot(start_tangent) < 0;
     const bool after = (point - end).dot(end_tangent) > 0;
@@ -135,7 +135,7 @@ double BoundaryPiece::distance_mm(const Point2& point) const {
     return std::sqrt(std::min((point - start).squaredNorm(), (point - end).squaredNorm()));
 }
 
-Boundary::Boundary(Region region) : pieces_(pieces_of(region)), tree_(boxes_of(pieces_)) {}
+Boundary::Boundary(Region region) : pieces_(boundary_pieces(region)), tree_(boxes_of(pieces_)) {}
 
 double Boundary::distance_mm(const Point2& point, double within_mm) const {
     const Vector2 margin(within_mm, within_mm);

@@ -55,17 +55,25 @@ void for_neighbours(const std::vector<BoundaryPiece>& pieces, Take take) {
     }
 }
 
+// In the order of the contours. Segments without length are left out.
+std::vector<BoundaryPiece> boundary_pieces(Region region);
+
 class Boundary {
 public:
     static constexpr auto none = static_cast<std::size_t>(-1);
 
     explicit Boundary(Region region);
 
-    // In the order of the contours. Segments without length are left out.
     const std::vector<BoundaryPiece>& pieces() const { return pieces_; }
     double distance_mm(const Point2& point, double within_mm) const;
     bool is_near(const Point2& point, double within_mm, std::size_t except = none) const;
     int winding(const Point2& point) const;
+
+    // Calls take(index) for every piece whose box meets this one.
+    template <class Take>
+    void meeting(const region::Box2& box, Take take) const {
+        tree_.meeting(box, take);
+    }
 
 private:
     std::vector<BoundaryPiece> pieces_;

@@ -1,12 +1,6 @@
 // Parallel lines that fill a region bounded by lines and arcs, clipped exactly.
 //
-// Contract
-//  1. A row meets a contour where the contour, cut into pieces that only rise or only fall across the rows,
-//     changes sides; a piece's end is above a row or not, never on it. So rows cross every closed contour an even
-//     number of times, and a corner that touches a row needs no special case.
-//  2. Crossings with lines and arcs are in closed form: no arc becomes a polygon.
-//  3. Inside is where the winding number is positive: overlapping regions are one.
-//  4. Row k is at (k + 1/2) * pitch from the origin of the plane, whatever the region: layers stay in register.
+// Contract: that of rows.h. Row k is at (k + 1/2) * pitch from the origin of the plane.
 //
 // Rows run along `direction`; their offset is measured to the left of it.
 

@@ -1,9 +1,9 @@
+#include "kernel/toolpath/hatch.h"
+
 #include <doctest/doctest.h>
 
 #include <numbers>
 #include <random>
-
-#include "kernel/toolpath/hatch.h"
 
 using namespace lyr;
 

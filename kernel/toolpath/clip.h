@@ -1,0 +1,28 @@
+// What of an open path of lines and arcs lies in a region. Arcs stay arcs.
+//
+// Contract
+//  1. Crossings are in closed form. What lies between two of them is in the region or not as a whole, and its middle says
+//     which: a crossing that is computed twice, or where the path only touches the boundary, does no harm.
+//  2. Parts are in the path's order and direction. Where a part ends on the boundary, its end's place says where.
+//  3. A part that runs along the boundary, within round-off, may be in the result or not.
+//
+// Cost: for each segment log n, and what is near.
+
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "kernel/toolpath/boundary_ruler.h"
+
+namespace lyr {
+
+struct PathPart {
+    Path path;
+    std::optional<BoundaryPlace> start, end;  // none where the path itself begins or ends
+};
+
+// An open path does not have to end where it starts.
+std::vector<PathPart> clipped(const Path& path, const Boundary& region);
+
+}  // namespace lyr
