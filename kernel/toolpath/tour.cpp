@@ -1,0 +1,105 @@
+// Islands are put in order first, each as one stop, then their stages each by a search from where the head is.
+
+#include "kernel/toolpath/tour.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "kernel/toolpath/tour_search.h"
+
+namespace lyr {
+namespace {
+
+// A shake costs 4 to 10 us. As many as stops gain 2 % of the travel for 20 to 50 stops; more than this many gain less
+// than the time they take, if a layer is to be sliced in some milliseconds.
+constexpr std::size_t most_shakes = 50;
+
+using Run = std::span<const std::uint32_t>;  // stops' indices
+
+// Indices with the same key, by rising key.
+template <class Key>
+std::vector<Run> runs_of(Run indices, Key key) {
+    std::vector<Run> runs;
+    for (std::size_t first = 0, last = 0; first < indices.size(); first = last) {
+        while (last < indices.size() && key(indices[last]) == key(indices[first])) ++last;
+        runs.push_back(indices.subspan(first, last - first));
+    }
+    return runs;
+}
+
+std::vector<Visit> searched(std::span<const Stop> stops, const Point2& from) {
+    TourSearch search(stops, from);
+    search.improve();
+    search.shake(std::min(most_shakes, stops.size()));
+    return search.visits();
+}
+
+Point2 left_at(const Stop& stop, bool reversed) {
+    return reversed ? stop.first : stop.last;
+}
+
+class IslandTour {
+public:
+    IslandTour(std::span<const Stop> stops, const Point2& from)
+        : stops_(stops), head_(from), order_(stops.size()) {
+        std::iota(order_.begin(), order_.end(), 0u);
+        std::stable_sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) {
+            return std::pair(stops[a].island, stops[a].stage) <
+                   std::pair(stops[b].island, stops[b].stage);
+        });
+        islands_ = runs_of(order_, [&](std::uint32_t i) { return stops[i].island; });
+    }
+
+    std::vector<Visit> visits() {
+        std::vector<Stop> places;
+        for (const Run island : islands_) places.push_back(place_of(island));
+        for (const Visit& island : searched(places, head_)) append_island(islands_[island.index]);
+        return std::move(visits_);
+    }
+
+private:
+    // An island of one stop is that; others are entered and left somewhere, in the middle as far as one knows.
+    Stop place_of(Run island) const {
+        if (island.size() == 1) return {stops_[island[0]].first, stops_[island[0]].last};
+        Point2 sum = Point2::Zero();
+        for (const std::uint32_t i : island) sum += stops_[i].first + stops_[i].last;
+        const Point2 middle = sum / (2.0 * static_cast<double>(island.size()));
+        return {middle, middle};
+    }
+
+    void append_island(Run island) {
+        for (const Run stage : runs_of(island, [&](std::uint32_t i) { return stops_[i].stage; })) {
+            std::vector<Stop> stops;
+            for (const std::uint32_t i : stage) stops.push_back(stops_[i]);
+            for (const Visit& visit : searched(stops, head_))
+                visits_.push_back({stage[visit.index], visit.reversed});
+            head_ = left_at(stops_[visits_.back().index], visits_.back().reversed);
+        }
+    }
+
+    std::span<const Stop> stops_;
+    Point2 head_;
+    std::vector<std::uint32_t> order_;
+    std::vector<Run> islands_;
+    std::vector<Visit> visits_;
+};
+
+}  // namespace
+
+std::vector<Visit> tour(std::span<const Stop> stops, const Point2& from) {
+    if (stops.empty()) return {};
+    return IslandTour(stops, from).visits();
+}
+
+double travel_mm(std::span<const Stop> stops, std::span<const Visit> visits, const Point2& from) {
+    double travel = 0;
+    Point2 head = from;
+    for (const Visit& visit : visits) {
+        const Stop& stop = stops[visit.index];
+        travel += ((visit.reversed ? stop.last : stop.first) - head).norm();
+        head = left_at(stop, visit.reversed);
+    }
+    return travel;
+}
+
+}  // namespace lyr
