@@ -1,15 +1,19 @@
-// The boundary of a region as it is asked about point by point: how far it is, and how often it winds around.
+// The boundary of a region as it is asked about points and straight ways: how far it is, how often it winds around, and
+// where it is crossed.
 //
 // Contract
 //  1. winding() counts at any point, also where a contour's segments meet; on the boundary itself it is that of one of
 //     its sides.
-//  2. distance_mm() is exact up to `within_mm`; beyond that it is `within_mm`.
+//  2. distance_mm() is exact up to `within_mm`; beyond that it is `within_mm`. nearest() is the piece of that distance.
+//  3. crossings() are where pieces change the sides of a line, an end being left of it or not: every contour crosses a
+//     whole line as often in as out. A touch is none, or two.
 //
-// Cost: log n for each question and what is near (or, for the winding, to the right) besides.
+// Cost: log n for each question and what is near (or, for the winding, to the right; for crossings, on the way) besides.
 
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "kernel/region/box_tree.h"
@@ -48,6 +52,12 @@ void for_neighbours(const std::vector<BoundaryPiece>& pieces, Take take) {
     }
 }
 
+struct BoundaryCrossing {
+    double along_mm;  // from the way's start
+    std::uint32_t piece;
+    bool leaves;  // the region, on the way
+};
+
 class Boundary {
 public:
     explicit Boundary(Region region);
@@ -55,7 +65,11 @@ public:
     // In the order of the contours. Segments without length are left out.
     const std::vector<BoundaryPiece>& pieces() const { return pieces_; }
     double distance_mm(const Point2& point, double within_mm) const;
+    std::optional<std::uint32_t> nearest(const Point2& point, double within_mm) const;
     int winding(const Point2& point) const;
+    // Strictly between the ends, in their order, in place of what `found` held.
+    void crossings(const Point2& from, const Point2& to,
+                   std::vector<BoundaryCrossing>& found) const;
 
 private:
     std::vector<BoundaryPiece> pieces_;
