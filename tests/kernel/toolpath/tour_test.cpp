@@ -154,7 +154,8 @@ TEST_CASE("tour 1: every stop is visited once") {
     }
 }
 
-TEST_CASE("tour: as short as the shortest for up to seven stops, but for half a percent on average") {
+TEST_CASE(
+    "tour: as short as the shortest for up to seven stops, but for half a percent on average") {
     Random random(2);
     double sum = 0, worst = 1;
     constexpr int rounds = 60;
@@ -256,6 +257,14 @@ TEST_CASE("tour: a row of islands is gone along once") {
             stops.push_back({Point2(20 * at, y), Point2(20 * at, y), island, y > 1 ? 1u : 0u});
     }
     CHECK(tour_mm(stops, {-1, 0}) < 7 * 20 + 8 * 5);
+}
+
+TEST_CASE("tour: the island that the head is at comes first, though its middle is far away") {
+    Stops stops;
+    for (int i = 0; i < 40; ++i) stops.push_back({Point2(2 * i, 0), Point2(2 * i, 1), 0});
+    for (int i = 0; i < 3; ++i) stops.push_back({Point2(70 + i, 9), Point2(70 + i, 10), 1});
+    const std::vector<Visit> visits = tour(stops, {-1, 0});
+    CHECK(stops[visits.front().index].island == 0);
 }
 
 TEST_CASE("tour: many stops in one place, and none") {
