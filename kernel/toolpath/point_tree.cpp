@@ -1,6 +1,7 @@
 #include "kernel/toolpath/point_tree.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 namespace lyr {
@@ -54,8 +55,7 @@ public:
         : tree_(tree), place_(place), most_(most), found_(found) {}
 
     void visit(const Node& node, double square_mm2) {
-        if (node.left == 0 || (found_.size() == most_ && square_mm2 > found_.back().square_mm2))
-            return;
+        if (node.left == 0 || square_mm2 > limit_mm2_) return;
         if (node.second == 0) {
             for (std::uint32_t i = node.first; i < node.last; ++i) take(tree_.items_[i]);
             return;
@@ -83,21 +83,25 @@ private:
     }
 
     void take(std::uint32_t point) {
-        if (tree_.removed_[point]) return;
         const Found found{(tree_.points_[point] - place_).squaredNorm(), point};
-        if (found_.size() == most_) {
-            if (!is_nearer(found, found_.back())) return;
-            found_.pop_back();
+        if (found.square_mm2 > limit_mm2_ || tree_.removed_[point]) return;
+        if (found_.size() < most_) {
+            found_.push_back(found);
+        } else if (!is_nearer(found, found_.back())) {
+            return;
         }
-        found_.push_back(found);
-        for (std::size_t i = found_.size() - 1; i > 0 && is_nearer(found_[i], found_[i - 1]); --i)
-            std::swap(found_[i], found_[i - 1]);
+        std::size_t i = found_.size() - 1;
+        for (; i > 0 && is_nearer(found, found_[i - 1]); --i) found_[i] = found_[i - 1];
+        found_[i] = found;
+        if (found_.size() == most_) limit_mm2_ = found_.back().square_mm2;
     }
 
     const PointTree& tree_;
     Point2 place_;
     std::size_t most_;
-    std::vector<Found>& found_;  // sorted
+    double limit_mm2_ =
+        std::numeric_limits<double>::infinity();  // what is farther is not asked for
+    std::vector<Found>& found_;                   // sorted
 };
 
 void PointTree::nearest(const Point2& place, std::size_t most, std::vector<Found>& found) const {

@@ -13,7 +13,7 @@ namespace {
 
 // A shake costs 4 to 10 us. As many as stops gain 2 % of the travel for 20 to 50 stops; more than this many gain less
 // than the time they take, if a layer is to be sliced in some milliseconds.
-constexpr std::size_t most_shakes = 50;
+constexpr std::size_t most_shakes = 30;
 
 // More islands are put in order by their middles only: they are small beside the ways between them.
 constexpr std::size_t most_by_entries = 30;
@@ -31,10 +31,12 @@ std::vector<Run> runs_of(Run indices, Key key) {
     return runs;
 }
 
-std::vector<Visit> searched(std::span<const Stop> stops, const Point2& from) {
+enum class Effort { quick, full };
+
+std::vector<Visit> searched(std::span<const Stop> stops, const Point2& from, Effort effort) {
     TourSearch search(stops, from);
     search.improve();
-    search.shake(std::min(most_shakes, stops.size()));
+    if (effort == Effort::full) search.shake(std::min(most_shakes, stops.size()));
     return search.visits();
 }
 
@@ -56,26 +58,37 @@ public:
 
     // The shorter one of two ways to put islands in order. Of islands of one stop the first is as good as it gets.
     std::vector<Visit> visits() const {
-        Walk walk = by_middles();
-        if (islands_.size() == 1 || islands_.size() > most_by_entries) return walk.visits;
-        Walk other = by_entries();
-        const bool better =
-            travel_mm(stops_, other.visits, from_) < travel_mm(stops_, walk.visits, from_);
-        return better ? other.visits : walk.visits;
+        std::vector<Run> islands = by_middles();
+        if (islands.size() > 1 && islands.size() <= most_by_entries) {
+            Walk entries = by_entries();
+            if (travel_of(entries) < travel_of(walk_of(islands, Effort::quick)))
+                islands = std::move(entries.islands);
+        }
+        return walk_of(islands, Effort::full).visits;
     }
 
 private:
     struct Walk {
         Point2 head;
+        std::vector<Run> islands{};
         std::vector<Visit> visits{};
     };
 
-    Walk by_middles() const {
+    double travel_of(const Walk& walk) const { return travel_mm(stops_, walk.visits, from_); }
+
+    Walk walk_of(std::span<const Run> islands, Effort effort) const {
+        Walk walk{from_};
+        for (const Run island : islands) append(island, effort, walk);
+        return walk;
+    }
+
+    std::vector<Run> by_middles() const {
         std::vector<Stop> places;
         for (const Run island : islands_) places.push_back(place_of(island));
-        Walk walk{from_};
-        for (const Visit& island : searched(places, from_)) append(islands_[island.index], walk);
-        return walk;
+        std::vector<Run> islands;
+        for (const Visit& island : searched(places, from_, Effort::full))
+            islands.push_back(islands_[island.index]);
+        return islands;
     }
 
     // An island of one stop is that; others are entered and left somewhere, in the middle as far as one knows.
@@ -95,7 +108,7 @@ private:
             const auto nearest = std::min_element(left.begin(), left.end(), [&](Run a, Run b) {
                 return entry_mm(a, walk.head) < entry_mm(b, walk.head);
             });
-            append(*nearest, walk);
+            append(*nearest, Effort::quick, walk);
             left.erase(nearest);
         }
         return walk;
@@ -111,11 +124,12 @@ private:
         return least;
     }
 
-    void append(Run island, Walk& walk) const {
+    void append(Run island, Effort effort, Walk& walk) const {
+        walk.islands.push_back(island);
         for (const Run stage : runs_of(island, [&](std::uint32_t i) { return stops_[i].stage; })) {
             std::vector<Stop> stops;
             for (const std::uint32_t i : stage) stops.push_back(stops_[i]);
-            for (const Visit& visit : searched(stops, walk.head))
+            for (const Visit& visit : searched(stops, walk.head, effort))
                 walk.visits.push_back({stage[visit.index], visit.reversed});
             walk.head = left_at(stops_[walk.visits.back().index], walk.visits.back().reversed);
         }
