@@ -17,7 +17,13 @@ public:
     // Calls take(index) for every box that meets `box`, borders included. The order depends on the boxes alone.
     template <class Take>
     void meeting(const Box2& box, Take take) const {
-        if (!nodes_.empty()) visit(0, box, take);
+        where([&](const Box2& other) { return other.intersects(box); }, take);
+    }
+
+    // The same for every box that is `wanted`, as every box has to be that holds one that is.
+    template <class Wanted, class Take>
+    void where(Wanted wanted, Take take) const {
+        if (!nodes_.empty()) visit(0, wanted, take);
     }
 
     Box2 bounds() const { return nodes_.empty() ? Box2() : nodes_.front().box; }
@@ -37,18 +43,18 @@ private:
 
     void build(std::span<Place> places, std::uint32_t first, std::uint32_t last);
 
-    template <class Take>
-    void visit(std::uint32_t index, const Box2& box, Take& take) const {
+    template <class Wanted, class Take>
+    void visit(std::uint32_t index, Wanted& wanted, Take& take) const {
         const Node& node = nodes_[index];
-        if (!node.box.intersects(box)) return;
+        if (!wanted(node.box)) return;
         if (node.second == 0) {
             for (std::uint32_t i = node.first; i < node.last; ++i) {
-                if (boxes_[i].intersects(box)) take(items_[i]);
+                if (wanted(boxes_[i])) take(items_[i]);
             }
             return;
         }
-        visit(index + 1, box, take);
-        visit(node.second, box, take);
+        visit(index + 1, wanted, take);
+        visit(node.second, wanted, take);
     }
 
     std::vector<Node> nodes_;

@@ -1,11 +1,14 @@
 // A contour winds around a point as often as its chords do, and once more or less for each arc between which and its
-// chord the point lies. So no arc needs to be cut where it turns.
+// chord the point lies. So no arc needs to be cut where it turns. Nor does it where a line crosses it: the sides of its
+// ends, and that of its circle's farthest point, say how often that is.
 
 #include "kernel/toolpath/boundary.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "kernel/geometry/tolerance.h"
 
 namespace lyr {
 namespace {
@@ -96,6 +99,51 @@ int winding_of(const BoundaryPiece& piece, const Point2& point) {
     return is_inside ? winding + (turns_left ? 1 : -1) : winding;
 }
 
+// A way as a line with a direction.
+struct Way {
+    Point2 from;
+    Vector2 along;  // unit
+    double length_mm;
+
+    double left_mm(const Point2& point) const { return cross(along, point - from); }
+    double along_mm(const Point2& point) const { return along.dot(point - from); }
+
+    // Whether it may meet what is in the box; the resolution covers round-off.
+    bool meets(const region::Box2& box) const {
+        const Vector2 half = box.sizes() / 2, middle = box.min() + half - from;
+        const double reach = half.x() * std::abs(along.y()) + half.y() * std::abs(along.x());
+        if (std::abs(cross(along, middle)) > reach + resolution_mm) return false;
+        const double depth = half.x() * std::abs(along.x()) + half.y() * std::abs(along.y());
+        const double at = along.dot(middle);
+        return at + depth >= -resolution_mm && at - depth <= length_mm + resolution_mm;
+    }
+};
+
+// Calls take(along_mm, leaves) where the piece crosses the whole line.
+template <class Take>
+void cross_way(const BoundaryPiece& piece, const Way& way, Take take) {
+    const double start_left = way.left_mm(piece.start), end_left = way.left_mm(piece.end);
+    const bool changes = (start_left > 0) != (end_left > 0), rises = end_left > 0;
+    if (piece.curvature_per_mm == 0) {
+        if (!changes) return;
+        const double start = way.along_mm(piece.start), end = way.along_mm(piece.end);
+        return take(start + (end - start) * start_left / (start_left - end_left), rises);
+    }
+    const bool turns_left = piece.curvature_per_mm > 0;
+    const double radius = 1 / std::abs(piece.curvature_per_mm);
+    const Point2 centre = piece.start + left_of(piece.start_tangent) / piece.curvature_per_mm;
+    const double aside = way.left_mm(centre), middle = way.along_mm(centre);
+    const double half = std::sqrt(std::max(0.0, (radius - aside) * (radius + aside)));
+    // A circle that turns left rises where the line leaves it.
+    if (changes) return take(rises == turns_left ? middle + half : middle - half, rises);
+    if (half == 0) return;
+    const Point2 farthest = centre + (rises ? -radius : radius) * left_of(way.along);
+    const bool is_right = cross(farthest - piece.start, piece.end - piece.start) > 0;
+    if (!piece.is_circle && is_right != turns_left) return;
+    take(middle - half, !turns_left);
+    take(middle + half, turns_left);
+}
+
 }  // namespace
 
 // From the middle, as far as which numbers are most exact.
@@ -152,6 +200,36 @@ bool Boundary::is_near(const Point2& point, double within_mm, std::size_t except
         near = near || (i != except && pieces_[i].distance_mm(point) <= within_mm);
     });
     return near;
+}
+
+std::optional<std::uint32_t> Boundary::nearest(const Point2& point, double within_mm) const {
+    const Vector2 margin(within_mm, within_mm);
+    double least = within_mm;
+    std::optional<std::uint32_t> found;
+    tree_.meeting({point - margin, point + margin}, [&](std::uint32_t i) {
+        const double distance = pieces_[i].distance_mm(point);
+        if (distance > least || (distance == least && found && i > *found)) return;
+        least = distance;
+        found = i;
+    });
+    return found;
+}
+
+void Boundary::crossings(const Point2& from, const Point2& to,
+                         std::vector<BoundaryCrossing>& found) const {
+    found.clear();
+    const double length = (to - from).norm();
+    if (length == 0) return;
+    const Way way{from, (to - from) / length, length};
+    tree_.where([&](const region::Box2& box) { return way.meets(box); },
+                [&](std::uint32_t i) {
+                    cross_way(pieces_[i], way, [&](double along, bool leaves) {
+                        if (along > 0 && along < length) found.push_back({along, i, leaves});
+                    });
+                });
+    std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
+        return a.along_mm < b.along_mm || (a.along_mm == b.along_mm && a.piece < b.piece);
+    });
 }
 
 int Boundary::winding(const Point2& point) const {

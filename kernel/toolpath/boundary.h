@@ -1,16 +1,20 @@
-// The boundary of a region as it is asked about point by point: how far it is, and how often it winds around.
+// The boundary of a region as it is asked about points and straight ways: how far it is, how often it winds around, and
+// where it is crossed.
 //
 // Contract
 //  1. winding() counts at any point, also where a contour's segments meet; on the boundary itself it is that of one of
 //     its sides.
-//  2. distance_mm() is exact up to `within_mm`; beyond that it is `within_mm`.
-//  3. is_near() says whether any piece (but for one, given by its place among pieces()) comes so near to the point.
+//  2. distance_mm() is exact up to `within_mm`; beyond that it is `within_mm`. nearest() is the piece of that distance.
+//  3. crossings() are where pieces change the sides of a line, an end being left of it or not: every contour crosses a
+//     whole line as often in as out. A touch is none, or two.
+//  4. is_near() says whether any piece (but for one, given by its place among pieces()) comes so near to the point.
 //
-// Cost: log n for each question and what is near (or, for the winding, to the right) besides.
+// Cost: log n for each question and what is near (or, for the winding, to the right; for crossings, on the way) besides.
 
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "kernel/region/box_tree.h"
@@ -55,6 +59,12 @@ void for_neighbours(const std::vector<BoundaryPiece>& pieces, Take take) {
     }
 }
 
+struct BoundaryCrossing {
+    double along_mm;  // from the way's start
+    std::uint32_t piece;
+    bool leaves;  // the region, on the way
+};
+
 // In the order of the contours. Segments without length are left out.
 std::vector<BoundaryPiece> boundary_pieces(Region region);
 
@@ -67,7 +77,11 @@ public:
     const std::vector<BoundaryPiece>& pieces() const { return pieces_; }
     double distance_mm(const Point2& point, double within_mm) const;
     bool is_near(const Point2& point, double within_mm, std::size_t except = none) const;
+    std::optional<std::uint32_t> nearest(const Point2& point, double within_mm) const;
     int winding(const Point2& point) const;
+    // Strictly between the ends, in their order, in place of what `found` held.
+    void crossings(const Point2& from, const Point2& to,
+                   std::vector<BoundaryCrossing>& found) const;
 
     // Calls take(index) for every piece whose box meets this one.
     template <class Take>

@@ -1,0 +1,200 @@
+// bench_orders: what it takes to put the layers of real parts in order, and how far the head travels then. Each layer
+// has walls and unlinked lines of sparse fill; layers follow each other, so that seams have those below.
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "bench/measure.h"
+#include "bench/step_files.h"
+#include "bench/table.h"
+#include "kernel/toolpath/hatch.h"
+#include "kernel/toolpath/layer_order.h"
+#include "kernel/toolpath/offset.h"
+#include "slicer/layers.h"
+#include "slicer/slicer.h"
+
+namespace {
+
+using namespace lyr;
+using namespace lyr::bench;
+
+struct Arguments {
+    std::string files = LYR_FIXTURES "/parts";
+    double layer_height_mm = 0.2;
+    std::size_t layers = 150;  // of a file, at most, from the bottom
+    std::uint32_t walls = 3;
+    double width_mm = 0.45;
+    double fill_pitch_mm = 2.8;  // 15 % of such lines
+    SeamChoice seam = SeamChoice::aligned;
+};
+
+constexpr double quarter_turn_rad = 1.5707963267948966;
+
+struct Layer {
+    std::vector<Contour> region;
+    std::vector<Strand> walls{};
+    std::vector<std::uint32_t> depths{};
+    std::vector<OpenPiece> pieces{};
+};
+
+struct Totals {
+    std::size_t files = 0, unread = 0, layers = 0, walls = 0, segments = 0, pieces = 0;
+    std::size_t ways = 0, bent = 0, cross = 0;
+    double seams_s = 0, regions_s = 0, order_s = 0, ways_s = 0, longest_s = 0;
+    double travel_mm = 0, made_mm = 0;
+};
+
+void add_fill(Region inside, std::size_t number, const Arguments& arguments, Layer& layer) {
+    const double angle = (0.5 + static_cast<double>(number % 2)) * quarter_turn_rad;
+    const Hatch lines = hatch(inside, angle, arguments.fill_pitch_mm);
+    const Vector2 along = lines.direction, across(-along.y(), along.x());
+    for (std::size_t row = 0; row < lines.row_count(); ++row) {
+        const double aside = lines.first_offset_mm + static_cast<double>(row) * lines.pitch_mm;
+        for (std::uint32_t k = lines.row_start[row]; k < lines.row_start[row + 1]; ++k) {
+            layer.pieces.push_back({lines.spans[k].start_mm * along + aside * across,
+                                    lines.spans[k].end_mm * along + aside * across});
+        }
+    }
+}
+
+Layer layer_of(std::vector<Contour> region, std::size_t number, const Arguments& arguments,
+               double allowed_mm) {
+    Layer layer{std::move(region)};
+    for (std::uint32_t depth = 0; depth <= arguments.walls; ++depth) {
+        const double inwards_mm = (depth + 0.5) * arguments.width_mm;
+        const OffsetResult ring = offset(layer.region, {-inwards_mm, allowed_mm});
+        if (depth == arguments.walls) {
+            add_fill(ring.contours, number, arguments, layer);
+            break;
+        }
+        for (const Contour& contour : ring.contours) {
+            layer.walls.push_back({contour, arguments.width_mm});
+            layer.depths.push_back(depth);
+        }
+    }
+    return layer;
+}
+
+// Of the way to each move's start.
+double travel_of(const Layer& layer, const std::vector<PrintMove>& moves) {
+    double travel = 0;
+    Point2 head = Point2::Zero();
+    const auto go = [&](const Point2& to) {
+        travel += (to - head).norm();
+        head = to;
+    };
+    for (const PrintMove& move : moves) {
+        for (const Point2& point : move.travel.via) go(point);
+        go(move.seam.point);
+        if (!move.is_wall)
+            head = move.reversed ? layer.pieces[move.index].first : layer.pieces[move.index].last;
+    }
+    return travel;
+}
+
+// As the layer was made, each piece from its first end.
+double travel_as_made(const Layer& layer) {
+    std::vector<PrintMove> moves;
+    for (std::uint32_t i = 0; i < layer.walls.size(); ++i)
+        moves.push_back({true, i, false, {start_of(layer.walls[i].path)}});
+    for (std::uint32_t i = 0; i < layer.pieces.size(); ++i)
+        moves.push_back({false, i, false, {layer.pieces[i].first}});
+    return travel_of(layer, moves);
+}
+
+void measure(const Layer& layer, const Arguments& arguments, double allowed_mm,
+             std::vector<Seam>& seams, Totals& totals) {
+    ++totals.layers;
+    totals.walls += layer.walls.size();
+    totals.pieces += layer.pieces.size();
+    for (const Strand& wall : layer.walls)
+        totals.segments += count(wall.path).lines + count(wall.path).arcs;
+    const double seams_s =
+        time_of_s([&] { seams = outer_seams(layer.walls, layer.depths, arguments.seam, seams); });
+    LayerPlan plan{layer.region, layer.walls, layer.depths, seams, layer.pieces};
+    std::vector<PrintMove> moves;
+    const double order_s = time_of_s([&] { moves = layer_order(plan); });
+    std::optional<Detours> detours;
+    const double region_s = time_of_s([&] { detours.emplace(layer.region, allowed_mm); });
+    plan.detours = &*detours;
+    const double both_s = time_of_s([&] { moves = layer_order(plan); });
+    totals.seams_s += seams_s;
+    totals.order_s += order_s;
+    totals.regions_s += region_s;
+    totals.ways_s += both_s - order_s;
+    totals.longest_s = std::max(totals.longest_s, seams_s + region_s + both_s);
+    for (const PrintMove& move : moves) {
+        ++totals.ways;
+        totals.bent += !move.travel.via.empty();
+        totals.cross += move.travel.crosses;
+    }
+    totals.travel_mm += travel_of(layer, moves);
+    totals.made_mm += travel_as_made(layer);
+}
+
+void measure_file(const std::string& path, const Arguments& arguments, Totals& totals) {
+    const slicer::Options options;
+    const double allowed_mm = options.tolerance().total_mm;
+    Diagnostics found;
+    const auto model = slicer::load(path, options, found);
+    if (!model) {
+        ++totals.unread;
+        return;
+    }
+    ++totals.files;
+    const Cutter cutter(*model, options.tolerance());
+    const HeightRange range = cutter.height_range();
+    const auto heights =
+        slicer::layer_middles(range.top_mm - range.bottom_mm, arguments.layer_height_mm);
+    std::vector<Seam> seams;
+    for (std::size_t i = 0; i < std::min(heights.size(), arguments.layers); ++i) {
+        const Section section = cutter.cut(range.bottom_mm + heights[i]);
+        std::vector<Contour> region = slicer::region_of(section, options.tolerance()).contours;
+        if (region.empty()) continue;
+        measure(layer_of(std::move(region), i, arguments, allowed_mm), arguments, allowed_mm, seams,
+                totals);
+    }
+}
+
+void print(const Totals& totals) {
+    const auto n = [](std::size_t value) { return std::to_string(value); };
+    const double layers = static_cast<double>(std::max<std::size_t>(1, totals.layers));
+    bench::print(Table{
+        "Order of layers",
+        {"what", "figure"},
+        {{"files (and that cannot be read)", n(totals.files) + " (" + n(totals.unread) + ")"},
+         {"layers", n(totals.layers)},
+         {"walls, with segments", n(totals.walls) + ", " + n(totals.segments)},
+         {"lines of fill", n(totals.pieces)},
+         {"seams, a layer", duration(totals.seams_s / layers)},
+         {"order, a layer", duration(totals.order_s / layers)},
+         {"regions for detours, a layer", duration(totals.regions_s / layers)},
+         {"ways, a layer", duration(totals.ways_s / layers)},
+         {"the longest layer, all of it", duration(totals.longest_s)},
+         {"ways, bent, crossing", n(totals.ways) + ", " + n(totals.bent) + ", " + n(totals.cross)},
+         {"travel, a layer", number(totals.travel_mm / layers) + " mm"},
+         {"travel as made, a layer", number(totals.made_mm / layers) + " mm"}}});
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    Arguments arguments;
+    CLI::App app("Order of layers: its time, and how far the head travels");
+    app.add_option("--files", arguments.files, "a STEP file or a folder of them");
+    app.add_option("--layer-height", arguments.layer_height_mm, "in mm");
+    app.add_option("--layers", arguments.layers, "at most so many of a file, from the bottom");
+    app.add_option("--walls", arguments.walls, "of each contour");
+    app.add_option("--fill-pitch", arguments.fill_pitch_mm, "in mm");
+    app.add_option("--seam", arguments.seam, "0 nearest, 1 rear, 2 aligned, 3 sharp");
+    CLI11_PARSE(app, argc, argv);
+
+    Totals totals;
+    for (const std::string& path : step_files(arguments.files))
+        measure_file(path, arguments, totals);
+    print(totals);
+    return 0;
+}
