@@ -147,7 +147,7 @@ void cross_way(const BoundaryPiece& piece, const Way& way, Take take) {
 }  // namespace
 
 // From the middle, as far as which numbers are most exact.
-BoundaryPlace BoundaryPiece::at(double fraction) const {
+BoundaryPoint BoundaryPiece::at(double fraction) const {
     const double along_mm = (fraction - 0.5) * length_mm, turn = curvature_per_mm * along_mm;
     if (turn == 0) return {middle + along_mm * middle_tangent, middle_tangent};
     const double sine = std::sin(turn), cosine = std::cos(turn), half_sine = std::sin(turn / 2);

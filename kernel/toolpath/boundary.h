@@ -22,7 +22,7 @@
 
 namespace lyr {
 
-struct BoundaryPlace {
+struct BoundaryPoint {
     Point2 point;
     Vector2 tangent;  // unit
 };
@@ -40,7 +40,7 @@ struct BoundaryPiece {
     bool is_wide = false;  // more than half a circle
 
     Carrier carrier() const { return {start, start_tangent, curvature_per_mm}; }
-    BoundaryPlace at(double fraction) const;
+    BoundaryPoint at(double fraction) const;
     double distance_mm(const Point2& point) const;
 };
 

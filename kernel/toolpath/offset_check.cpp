@@ -254,7 +254,7 @@ Check::Fault Check::missing() const {
     for_neighbours(source_.pieces(), [&](const BoundaryPiece& before, const BoundaryPiece& piece) {
         const double places = places_beside(piece);
         for (double i = 0.5; i < places; ++i) {
-            const BoundaryPlace place = piece.at(i / places);
+            const BoundaryPoint place = piece.at(i / places);
             look(piece, place.point, place.tangent);
         }
         const Vector2 middle = before.end_tangent + piece.start_tangent;
