@@ -106,7 +106,7 @@ std::vector<Point3> points_along(const std::vector<WallPiece>& walls, std::size_
 Result<std::vector<Point3>> printed_points(const std::string& step_path, double layer_height_mm,
                                            std::size_t count) {
     slicer::Options options;
-    options.profile.layer.height_mm = layer_height_mm;
+    options.profile.layer.height_mm = options.profile.layer.first_height_mm = layer_height_mm;
     Diagnostics found;
     auto model = slicer::load(step_path, options, found);
     if (!model) return model.error();
