@@ -30,6 +30,9 @@ struct BoundaryPiece {
     bool is_wide = false;  // more than half a circle
 
     Carrier carrier() const { return {start, start_tangent, curvature_per_mm}; }
+    region::Curve curve() const {
+        return {start, end, middle, middle_tangent, curvature_per_mm, length_mm / 2};
+    }
     double distance_mm(const Point2& point) const;
 };
 

@@ -176,11 +176,14 @@ std::int64_t number_rows(std::vector<RowCurve>& curves, const RowGrid& grid, std
 }  // namespace
 
 double crossing_x_mm(const RowCurve& curve, double y_mm) {
+    // A row's height is rounded, a curve that is nearly level may be no higher than that: it must not be followed beyond
+    // its ends.
+    const double y = std::clamp(y_mm, curve.low.y(), curve.high.y());
     if (!curve.is_arc) {
-        const double share = (y_mm - curve.low.y()) / (curve.high.y() - curve.low.y());
+        const double share = (y - curve.low.y()) / (curve.high.y() - curve.low.y());
         return curve.low.x() + share * (curve.high.x() - curve.low.x());
     }
-    const double across = y_mm - curve.centre.y(), r = curve.radius_mm;
+    const double across = y - curve.centre.y(), r = curve.radius_mm;
     const double half = std::sqrt(std::max(0.0, (r - across) * (r + across)));
     return curve.centre.x() + (curve.right_half ? half : -half);
 }
