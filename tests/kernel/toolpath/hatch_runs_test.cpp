@@ -120,6 +120,17 @@ TEST_CASE("hatch_runs 3: no link goes through a hole that lies between two rows"
     CHECK(links(filled.runs) == 4);
 }
 
+TEST_CASE("hatch_runs 3: no link goes through an opposite wall that bulges between two rows") {
+    // The hole touches the rounded end from inside, halfway between two rows.
+    for (const double gap : {1e-3, 0.05, 0.2}) {
+        const Contours region{FullCircle{{0, 0}, 1, true}, FullCircle{{-0.5 + gap, 0}, 0.5, false}};
+        for (int i = 0; i < 12; ++i) {
+            const Contours turned = moved(region, {.angle_rad = i * pi / 6 + 0.01});
+            for (const double pitch : {0.2, 0.5, 0.7}) check_runs(turned, fill(turned, 0, pitch));
+        }
+    }
+}
+
 TEST_CASE("hatch_runs: a run that is reversed is the same rows and links the other way round") {
     const Contours region{rectangle(-20, -20, 20, 20), FullCircle{{1, 2}, 6, false}};
     for (const double pitch : {0.4, 0.41, 0.9}) {
