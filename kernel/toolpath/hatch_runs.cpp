@@ -43,6 +43,13 @@ Strips strips_of(const Rows& rows) {
     return strips;
 }
 
+// Over the chord of two of its points; it is no more than a semicircle.
+double bulge_mm(const RowCurve& curve, const Point2& a, const Point2& b) {
+    if (!curve.is_arc) return 0;
+    const double half2 = (b - a).squaredNorm() / 4, r = curve.radius_mm;
+    return half2 / (r + std::sqrt(std::max(0.0, r * r - half2)));
+}
+
 // The part of a curve between two heights.
 struct CurvePart {
     Point2 low, high;
@@ -56,24 +63,14 @@ CurvePart part_between(const RowCurve& curve, double low_y, double high_y) {
     };
     const Point2 low = at(curve.low, std::max(low_y, curve.low.y()));
     const Point2 high = at(curve.high, std::min(high_y, curve.high.y()));
-    CurvePart part{low, high, std::min(low.x(), high.x()), std::max(low.x(), high.x()), 0};
+    CurvePart part{low, high, std::min(low.x(), high.x()), std::max(low.x(), high.x()),
+                   bulge_mm(curve, low, high)};
     if (!curve.is_arc) return part;
-    const double half2 = (high - low).squaredNorm() / 4, r = curve.radius_mm;
-    part.bulge_mm = half2 / (r + std::sqrt(std::max(0.0, r * r - half2)));
     if (low.y() < curve.centre.y() && curve.centre.y() < high.y()) {
-        if (curve.right_half) part.right_mm = curve.centre.x() + r;
-        if (!curve.right_half) part.left_mm = curve.centre.x() - r;
+        if (curve.right_half) part.right_mm = curve.centre.x() + curve.radius_mm;
+        if (!curve.right_half) part.left_mm = curve.centre.x() - curve.radius_mm;
     }
     return part;
-}
-
-// How far the arc from one point to another reaches to the left of its chord.
-double left_bulge_mm(const RowCurve& curve, const Point2& from, const Point2& to) {
-    if (!curve.is_arc) return 0;
-    const Vector2 chord = to - from;
-    if (cross(chord, curve.centre - from) >= 0) return 0;
-    const double half2 = chord.squaredNorm() / 4, r = curve.radius_mm;
-    return half2 / (r + std::sqrt(std::max(0.0, r * r - half2)));
 }
 
 class RunBuilder {
@@ -212,8 +209,8 @@ private:
             const bool rises = curve.falls != right;
             const Point2 end = i == to.curve ? to.point : (rises ? curve.high : curve.low);
             const double end_off = inwards * cross(link, end - from.point) / length;
-            const double bulge =
-                right ? left_bulge_mm(curve, at, end) : left_bulge_mm(curve, end, at);
+            // Material is to the left of right ends: there, left halves of circles bulge into it.
+            const double bulge = curve.right_half != right ? bulge_mm(curve, at, end) : 0;
             if (std::max({0.0, at_off, end_off}) + bulge > limits_.stray_mm) return false;
             if (i == to.curve) break;
             at = end;

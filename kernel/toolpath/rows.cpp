@@ -188,6 +188,19 @@ double crossing_x_mm(const RowCurve& curve, double y_mm) {
     return curve.centre.x() + (curve.right_half ? half : -half);
 }
 
+std::vector<RowSpan> spans_at(const Rows& rows, double y_mm) {
+    std::vector<Crossing> crossings;
+    for (std::uint32_t i = 0; i < rows.curves.size(); ++i) {
+        const RowCurve& curve = rows.curves[i];
+        if (curve.low.y() < y_mm && curve.high.y() >= y_mm)
+            crossings.push_back({crossing_x_mm(curve, y_mm), i, curve.falls ? 1 : -1});
+    }
+    sort(crossings);
+    std::vector<RowSpan> spans;
+    append_spans(crossings, spans);
+    return spans;
+}
+
 Rows rows_across(std::span<const BoundaryPiece> boundary, const RowGrid& grid) {
     Rows rows{.direction = {std::cos(grid.angle_rad), std::sin(grid.angle_rad)},
               .pitch_mm = grid.pitch_mm};

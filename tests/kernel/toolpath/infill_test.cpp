@@ -281,6 +281,18 @@ TEST_CASE("infill 7: a region that lies between two rows is not empty, whatever 
     }
 }
 
+TEST_CASE("infill 2: no line leaves an island that lies between two rows and is bent") {
+    for (int i = 0; i < 48; ++i) {
+        // A crescent, less high than rows are apart.
+        const Motion motion{.angle_rad = 0, .shift = {1, 0.02 * i}, .mirrored = i % 2 == 1};
+        const Contours crescent =
+            moved(Contours{Path{{-3, 0}, {{{3, 0}, 0.3}, {{-3, 0}, -0.25}}}}, motion);
+        const Fill fill = infill(crescent, request(InfillPattern::aligned, 1, 0));
+        CHECK(pieces(fill) > 0);
+        check_inside(crescent, fill);
+    }
+}
+
 TEST_CASE("infill: rectilinear alternates, aligned does not, cubes move with the height") {
     const Contours square{rectangle(-10, -10, 10, 10)};
     const auto direction = [&](InfillPattern pattern, std::size_t layer) {
