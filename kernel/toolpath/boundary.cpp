@@ -56,6 +56,7 @@ region::Box2 circle_box(const BoundaryPiece& piece) {
     const double radius = 1 / piece.curvature_per_mm;
     const Point2 centre = piece.start + radius * left_of(piece.start_tangent);
     const Vector2 margin(std::abs(radius), std::abs(radius));
+    // With the ends, which round-off may leave outside: their heights say which rays meet the chord.
     return region::Box2(Point2(centre - margin), Point2(centre + margin))
         .extend(piece.start)
         .extend(piece.end);
