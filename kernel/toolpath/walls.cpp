@@ -13,8 +13,8 @@ namespace {
 // Walls closer to their own opposite side than this share of their spacing overlap too much.
 constexpr double least_space_share = 0.75;
 
-// Area that is filled twice or not at all and not looked into, of a layer: as much as a cube of this edge covers.
-constexpr double unseen_mm = 0.1;
+// Area that is filled twice or not at all and not looked into, of a wall of a layer: a square of this edge.
+constexpr double unseen_mm = 0.25;
 
 // Corners as sharp as two fifths of a radian are wide enough: beyond, a nozzle cannot tell the tip from a line.
 constexpr double mitre_limit = 5;
@@ -102,12 +102,19 @@ private:
         const double outer_mm = depth == 0 ? 0 : middle - spacing_mm_ / 2;
         const std::vector<Contour> outer = depth == 0 ? base_ : inside_;
         std::vector<Contour> wall = shrunk(middle), inner = shrunk(middle + spacing_mm_ / 2);
-        if (!is_even(outer, inner, middle + spacing_mm_ / 2 - outer_mm)) {
-            wall = wide_parts(wall, middle);
-            base_ = wall;
-            base_mm_ = middle;
-            inner = shrunk(middle + spacing_mm_ / 2);
-            add_narrow(outer, offset_by(wall, middle - outer_mm, Corner::mitre), depth);
+        const bool is_wanted = depth == 0 ? request_.thin_walls : request_.gap_fill;
+        if (is_wanted && !is_even(outer, inner, middle + spacing_mm_ / 2 - outer_mm)) {
+            std::vector<Contour> wide = wide_parts(wall, middle);
+            const bool is_cut = area_of(wall) - area_of(wide) > unseen_mm * unseen_mm;
+            if (is_cut) wall = std::move(wide);
+            const std::vector<Contour> covered = offset_by(wall, middle - outer_mm, Corner::mitre);
+            // Else only edges have vanished.
+            if (is_cut || area_of(outer) - area_of(covered) > unseen_mm * unseen_mm) {
+                base_ = wall;
+                base_mm_ = middle;
+                inner = shrunk(middle + spacing_mm_ / 2);
+                add_narrow(outer, covered, depth);
+            }
         }
         add(wall, depth);
         inside_ = std::move(inner);

@@ -4,7 +4,7 @@
 //  1. The outermost wall's outer flank is the outline: its middle is half a width within, so that dimensions are exact.
 //     Walls are spaced by width - overlap x height (1 - pi/4), at overlap 1 that of rounded rectangles without a gap
 //     between. Lines stay lines, arcs are about the same centres in all walls.
-//  2. Where the region is so narrow that a wall's opposite sides would lie over each other by more than a quarter of
+//  2. With `thin_walls`, of the outermost, and `gap_fill`, of the others: where the region is so narrow that a wall's opposite sides would lie over each other by more than a quarter of
 //     their spacing, there is no wall; that part is in `thin` (no wall at all fits) or `gaps` (none beside the walls that
 //     do), as the region to be filled from flank to flank. Parts narrower than the least width are left out and their
 //     area counted.
@@ -26,6 +26,7 @@ struct WallRequest {
     double width_mm = 0.45, height_mm = 0.2;
     double overlap = 1;         // see 1; in [0, 1]
     double min_width_mm = 0.2;  // of what is worth filling
+    bool thin_walls = true, gap_fill = true;
     Corner corner = Corner::round;
     double allowed_mm = 0;
 };
