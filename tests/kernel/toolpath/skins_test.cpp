@@ -218,6 +218,18 @@ TEST_CASE("skins: steps narrower than a line make nothing solid") {
         CHECK(same_bits(stack.skins(layer).sparse, stack.insides[layer]));
 }
 
+TEST_CASE("skins 2: gaps of two layers that are narrow each and side by side are solid together") {
+    const double gap = 0.7 * width_mm;
+    std::vector<Contours> layers(12, {rectangle(0, 0, 30, 10)});
+    layers[6].push_back(reversed(rectangle(10, 2, 10 + gap, 8)));
+    layers[7].push_back(reversed(rectangle(10 + gap, 2, 10 + 2 * gap, 8)));
+    const LayerSkins skins = Stack(layers).skins(5);
+    for (const double share : {0.2, 0.5, 0.9, 1.1, 1.5, 1.8})
+        CHECK(winding(skins.sparse, {10 + share * gap, 5}) == 0);
+    layers[7] = layers[8];
+    CHECK(total_area(Stack(layers).skins(5).solid) == 0);
+}
+
 TEST_CASE("skins 4: small sparse parts are solid") {
     std::vector<Contours> layers(12, {rectangle(0, 0, 3, 3), rectangle(10, 0, 20, 10)});
     SkinRequest request = usual;
