@@ -270,17 +270,21 @@ std::optional<LayerSkins> divided(Region inside, const Parts& parts, const Windo
     return skins;
 }
 
-double area_mm2(Region region) {
-    double area = 0;
-    for (const Contour& contour : region) area += area_mm2(contour);
-    return area;
+// Smaller than it may be, or narrower than a line, taken over its length.
+bool is_small(Region part, const SkinRequest& request) {
+    double area_mm2 = 0, length_mm = 0;
+    for (const Contour& contour : part) {
+        area_mm2 += lyr::area_mm2(contour);
+        length_mm += lyr::length_mm(contour);
+    }
+    return area_mm2 < request.min_sparse_mm2 || 2 * area_mm2 < request.width_mm * length_mm;
 }
 
 // Moves small parts of the sparse fill to the solid one. False: unresolved.
 bool fill_small(LayerSkins& skins, const SkinRequest& request) {
     Contours small, large;
     for (const Contours& part : parts_of(skins.sparse)) {
-        Contours& place = area_mm2(part) < request.min_sparse_mm2 ? small : large;
+        Contours& place = is_small(part, request) ? small : large;
         place.insert(place.end(), part.begin(), part.end());
     }
     if (small.empty()) return true;

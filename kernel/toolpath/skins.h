@@ -13,7 +13,8 @@
 //     that leaves bare, on each row, less than an eighth of a width more than others do is not.
 //  3. Solid parts, bridges and top skins reach one width over what has to be solid, within the inside: there they are
 //     anchored. Where they would overlap, a bridge comes before a top skin, and that before solid fill.
-//  4. Parts of the sparse fill smaller than `min_sparse_mm2` are solid.
+//  4. Parts of the sparse fill that are smaller than `min_sparse_mm2`, or narrower than a line taken over their length,
+//     are solid.
 //  5. Where an operation on regions could not be settled, or numbers are not finite or out of range, the whole layer is
 //     solid, and counted as unresolved.
 //  6. The result depends on the outlines of the window and on the inside, so layers can be made in any order and on any

@@ -240,6 +240,14 @@ TEST_CASE("skins 4: small sparse parts are solid") {
     CHECK(total_area(skins.sparse) == doctest::Approx(8.8 * 8.8));
 }
 
+TEST_CASE("skins 4: a sparse part narrower than a line is solid") {
+    const double narrow = 2 * walls_mm + 0.9 * width_mm, wide = 2 * walls_mm + 1.2 * width_mm;
+    const Stack stack({12, {rectangle(0, 0, 30, narrow), rectangle(0, 5, 30, 5 + wide)}});
+    const LayerSkins skins = stack.skins(5);
+    CHECK(total_area(skins.solid) == doctest::Approx(28.8 * 0.9 * width_mm));
+    CHECK(total_area(skins.sparse) == doctest::Approx(28.8 * 1.2 * width_mm));
+}
+
 TEST_CASE("skins 5: what is not finite is solid and counted") {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     Stack stack(staircase());
