@@ -1,7 +1,9 @@
 #include "slicer/fill.h"
 
+#include <algorithm>
 #include <numbers>
 
+#include "kernel/toolpath/bridges.h"
 #include "kernel/toolpath/infill.h"
 
 namespace lyr::slicer {
@@ -54,11 +56,19 @@ public:
           allowed_mm_(options.tolerance().unite_mm()) {}
 
     void solid(Region region, format::Role role) {
-        append(region, role,
-               {.pattern = kernel_pattern(profile_.skin.pattern),
-                .density = 1,
-                .width_mm = profile_.skin.width_mm,
-                .angle_rad = radians(profile_.skin.angle_deg)});
+        append(region, role, kernel_pattern(profile_.skin.pattern),
+               radians(profile_.skin.angle_deg));
+    }
+
+    void bridges(Region region, Region below) {
+        for (const Bridge& bridge : bridges_over(region, below, profile_.skin.width_mm)) {
+            if (bridge.angle_rad) {
+                append(bridge.contours, format::Role::bridge, InfillPattern::aligned,
+                       *bridge.angle_rad);
+            } else {
+                solid(bridge.contours, format::Role::bottom_skin);
+            }
+        }
     }
 
     void sparse(Region region) {
@@ -73,6 +83,14 @@ public:
     LayerFill fill{};
 
 private:
+    void append(Region region, format::Role role, InfillPattern pattern, double angle_rad) {
+        append(region, role,
+               {.pattern = pattern,
+                .density = 1,
+                .width_mm = profile_.skin.width_mm,
+                .angle_rad = angle_rad});
+    }
+
     // The region begins half a spacing from the walls' middles; lines end so that their flanks overlap with those of the
     // walls by what the profile says.
     void append(Region region, format::Role role, InfillRequest request) {
@@ -101,13 +119,31 @@ private:
 
 }  // namespace
 
-LayerFill fill_layer(std::size_t index, const LayerSpan& span, const OutlinedLayer& layer,
-                     const Options& options) {
+LayerFill fill_layer(std::size_t index, const LayerSpan& span, const Walls& walls,
+                     std::span<const SkinOutline> outlines, const Options& options) {
+    const profile::Profile& profile = options.profile;
     Filler filler(index, span, options);
-    if (options.profile.infill.density == 1) {
-        filler.solid(layer.walls.inside, format::Role::solid_infill);
+    const bool is_solid = profile.infill.density == 1;
+    // Of a solid part only what is bare has a role of its own.
+    const auto layers = [&](std::uint32_t count) { return is_solid ? std::min(count, 1u) : count; };
+    LayerSkins skins = skins_of(outlines, index, walls.inside,
+                                {.top_layers = layers(profile.skin.top_layers),
+                                 .bottom_layers = layers(profile.skin.bottom_layers),
+                                 .width_mm = profile.skin.width_mm,
+                                 .min_sparse_mm2 = profile.skin.min_area_mm2,
+                                 .allowed_mm = options.tolerance().unite_mm()});
+    filler.fill.unresolved += skins.unresolved;
+    filler.solid(skins.bottom, format::Role::bottom_skin);
+    filler.solid(skins.top, format::Role::top_skin);
+    if (index > 0) filler.bridges(skins.bridge, outlines[index - 1].region());
+    if (is_solid) {
+        const RegionResult rest =
+            combined(skins.solid, skins.sparse, Operation::unite, options.tolerance().unite_mm());
+        filler.fill.unresolved += rest.unresolved;
+        filler.solid(rest.contours, format::Role::solid_infill);
     } else {
-        filler.sparse(layer.walls.inside);
+        filler.solid(skins.solid, format::Role::solid_infill);
+        filler.sparse(skins.sparse);
     }
     return std::move(filler.fill);
 }

@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <span>
 #include <variant>
 
 #include "format/operation.h"
@@ -21,7 +22,8 @@ struct LayerFill {
     std::size_t unresolved = 0;
 };
 
-LayerFill fill_layer(std::size_t index, const LayerSpan& span, const OutlinedLayer& layer,
-                     const Options& options);
+// `outlines` are those of all layers.
+LayerFill fill_layer(std::size_t index, const LayerSpan& span, const Walls& walls,
+                     std::span<const SkinOutline> outlines, const Options& options);
 
 }  // namespace lyr::slicer

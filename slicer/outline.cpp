@@ -93,6 +93,7 @@ OutlinedLayer outline_layer(const Cutter& cutter, std::size_t index, const Layer
         made.error = inside.error();
         return made;
     }
+    made.seen = SkinOutline(made.outline, options.profile.skin.width_mm);
     made.walls = walls_of(made.outline, span, options);
     if (made.walls.unresolved > 0)
         warn(counted(made.walls.unresolved, "offset") +

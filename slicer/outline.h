@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "kernel/toolpath/skins.h"
 #include "kernel/toolpath/walls.h"
 #include "slicer/layers.h"
 
@@ -23,6 +24,7 @@ std::vector<LayerSpan> layer_spans(double part_height_mm, const profile::Layer& 
 // What one layer's work gives; `error` ends the print.
 struct OutlinedLayer {
     std::vector<Contour> outline{};
+    SkinOutline seen{};  // of the outline
     Walls walls{};
     SectionFigures section{}, printed{};
     bool united = false;

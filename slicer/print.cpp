@@ -119,8 +119,9 @@ struct FilledLayer {
 };
 
 FilledLayer fill_and_encode(std::size_t i, const LayerSpan& span, const OutlinedLayer& outlined,
-                            std::span<const Seam> seams, const Options& options) {
-    const LayerFill fill = fill_layer(i, span, outlined, options);
+                            std::span<const SkinOutline> outlines, std::span<const Seam> seams,
+                            const Options& options) {
+    const LayerFill fill = fill_layer(i, span, outlined.walls, outlines, options);
     FilledLayer made{.unresolved = fill.unresolved};
     auto encoded =
         encode_layer({i, span, outlined, fill, seams}, options, quantum_for(options.tolerance()));
@@ -137,10 +138,14 @@ Status write_layers(std::span<const OutlinedLayer> layers, std::span<const Layer
                     const Options& options, format::Writer& writer, const Progress& progress,
                     Diagnostics& diagnostics) {
     const auto seams = seams_of(layers, seam_choice(options.profile.perimeters.seam));
+    std::vector<SkinOutline> outlines;
+    for (const OutlinedLayer& layer : layers) outlines.push_back(layer.seen);
     std::optional<Diagnostic> failed;
     in_order(
         layers.size(), thread_count(options),
-        [&](std::size_t i) { return fill_and_encode(i, spans[i], layers[i], seams[i], options); },
+        [&](std::size_t i) {
+            return fill_and_encode(i, spans[i], layers[i], outlines, seams[i], options);
+        },
         [&](std::size_t i, FilledLayer made) {
             if (made.unresolved > 0)
                 diagnostics.push_back(

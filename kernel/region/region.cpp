@@ -39,12 +39,23 @@ constexpr std::array<Attempt, 3> attempts{{{0, 1}, {1, 1}, {2, 0.25}}};
 constexpr int most_rounds = 8;
 
 struct Widths {
+    Widths(double allowed, double sliver)
+        : allowed_mm(allowed), sliver_mm(std::max(allowed, sliver)) {}
+
     double allowed_mm, sliver_mm;
 };
 
 struct AreaBounds {
     double least_mm2, most_mm2;
     bool whole_operands = true;  // made of the operands' areas, not of those of parts of them
+};
+
+constexpr AreaBounds any_area{0, std::numeric_limits<double>::infinity()};
+
+// One of the results that an arrangement is made for.
+struct Part {
+    Inside inside;
+    AreaBounds bounds;
 };
 
 Contour turned(const Contour& contour, double angle_rad) {
@@ -112,25 +123,30 @@ double area_mm2(Region region) {
 
 struct Swept {
     region::Arrangement arrangement;
-    region::Sweep sweep;
+    std::vector<region::Sweep> sweeps;  // by part
 };
 
-// As far as the rounds go; whether that is right is to be checked.
-Swept swept(std::span<const Input> inputs, const Inside& inside, double snap_mm) {
-    region::Arrangement arrangement = region::arranged(inputs, snap_mm);
-    region::Sweep sweep = region::swept(arrangement, inside, snap_mm);
-    for (int round = 1; round < most_rounds && !sweep.crossings.empty(); ++round) {
-        arrangement = region::refined(arrangement, sweep.crossings, snap_mm);
-        sweep = region::swept(arrangement, inside, snap_mm);
+// As far as the rounds go; whether that is right is to be checked. What crosses does not depend on the part.
+Swept swept(std::span<const Input> inputs, std::span<const Part> parts, double snap_mm) {
+    Swept result{region::arranged(inputs, snap_mm), {}};
+    region::Arrangement& arrangement = result.arrangement;
+    region::Sweep first = region::swept(arrangement, parts[0].inside, snap_mm);
+    for (int round = 1; round < most_rounds && !first.crossings.empty(); ++round) {
+        arrangement = region::refined(arrangement, first.crossings, snap_mm);
+        first = region::swept(arrangement, parts[0].inside, snap_mm);
     }
-    return {std::move(arrangement), std::move(sweep)};
+    result.sweeps.push_back(std::move(first));
+    for (const Part& part : parts.subspan(1)) {
+        result.sweeps.push_back(region::swept(arrangement, part.inside, snap_mm));
+    }
+    return result;
 }
 
 // The bounds hold for regions that do not cross themselves. Where one winds around points the wrong way, or more than
 // once, its area is less than that of the points in it, or more.
-bool area_agrees(Region result, const Swept& swept, const Inside& inside, const AreaBounds& bounds,
-                 double slack_mm2) {
-    const auto& [arrangement, sweep] = swept;
+bool area_agrees(Region result, const region::Arrangement& arrangement, const region::Sweep& sweep,
+                 const Part& part, double slack_mm2) {
+    const AreaBounds& bounds = part.bounds;
     const double area = area_mm2(result);
     const double crossed =
         region::area_mm2(arrangement, sweep, [](const Winding& w) { return w.a < 0 || w.b < 0; });
@@ -138,14 +154,40 @@ bool area_agrees(Region result, const Swept& swept, const Inside& inside, const 
         !bounds.whole_operands ? 0 : region::area_mm2(arrangement, sweep, [](const Winding& w) {
             return std::max(0, w.a - 1) + std::max(0, w.b - 1);
         });
-    return std::abs(area - region::area_mm2(arrangement, sweep, inside)) <= slack_mm2 &&
+    return std::abs(area - region::area_mm2(arrangement, sweep, part.inside)) <= slack_mm2 &&
            area >= bounds.least_mm2 - crossed - repeated - slack_mm2 &&
            area <= bounds.most_mm2 + crossed + slack_mm2;
 }
 
-std::optional<RegionResult> attempt(std::span<const Input> inputs, const Inside& inside,
-                                    const Attempt& how, const AreaBounds& bounds,
-                                    const Widths& widths) {
+bool is_sound(const region::Sweep& sweep, double allowed_mm) {
+    return sweep.contradictions == 0 && region::is_closed(sweep) &&
+           sweep.worst_detour_mm <= allowed_mm;
+}
+
+// Of inputs that have been turned.
+RegionResult contours_of(std::span<const Input> inputs, std::span<const Input> seen,
+                         const region::Arrangement& arrangement, const region::Sweep& sweep,
+                         double turn_rad, const Widths& widths) {
+    const region::Stitched found = region::stitched(
+        seen, arrangement, sweep, join_share * widths.allowed_mm, widths.sliver_mm);
+    RegionResult result;
+    result.changed = !found.built.empty() || found.whole.size() != inputs.size();
+    result.slivers = found.slivers;
+    for (const region::WholeInput& whole : found.whole) {
+        const Contour& contour = *inputs[whole.input].contour;
+        result.contours.push_back(whole.reversed ? reversed(contour) : contour);
+        result.changed = result.changed || whole.reversed;
+    }
+    for (const Contour& contour : found.built) {
+        result.contours.push_back(turned(contour, -turn_rad));
+    }
+    return result;
+}
+
+// By part; none if any of them fails its check.
+std::optional<std::vector<RegionResult>> attempt(std::span<const Input> inputs,
+                                                 std::span<const Part> parts, const Attempt& how,
+                                                 const Widths& widths) {
     std::vector<Contour> contours;
     for (const Input& input : inputs) contours.push_back(turned(*input.contour, how.turn_rad));
     std::vector<Input> seen(inputs.begin(), inputs.end());
@@ -156,36 +198,29 @@ std::optional<RegionResult> attempt(std::span<const Input> inputs, const Inside&
     }
     const double snap_mm =
         std::max(resolution_mm, snap_share * widths.allowed_mm * how.snap_factor);
-    const Swept found = swept(seen, inside, snap_mm);
-    const auto& [arrangement, sweep] = found;
-    if (sweep.contradictions > 0 || !region::is_closed(sweep) ||
-        sweep.worst_detour_mm > widths.allowed_mm ||
-        !region::windings_agree(seen, arrangement, sweep, snap_mm)) {
+    const auto [arrangement, sweeps] = swept(seen, parts, snap_mm);
+    if (!std::all_of(sweeps.begin(), sweeps.end(),
+                     [&](const auto& sweep) { return is_sound(sweep, widths.allowed_mm); }) ||
+        !region::windings_agree(seen, arrangement, sweeps[0], snap_mm)) {
         return std::nullopt;
     }
-    const double sliver_mm = std::max(widths.allowed_mm, widths.sliver_mm);
-    const region::Stitched stitched =
-        region::stitched(seen, arrangement, sweep, join_share * widths.allowed_mm, sliver_mm);
-    RegionResult result;
-    result.changed = !stitched.built.empty() || stitched.whole.size() != inputs.size();
-    result.slivers = stitched.slivers;
-    for (const region::WholeInput& whole : stitched.whole) {
-        const Contour& contour = *inputs[whole.input].contour;
-        result.contours.push_back(whole.reversed ? reversed(contour) : contour);
-        result.changed = result.changed || whole.reversed;
+    std::vector<RegionResult> results;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        RegionResult result =
+            contours_of(inputs, seen, arrangement, sweeps[i], how.turn_rad, widths);
+        if (!area_agrees(result.contours, arrangement, sweeps[i], parts[i],
+                         widths.sliver_mm * length)) {
+            return std::nullopt;
+        }
+        result.contours = sorted(result.contours);
+        results.push_back(std::move(result));
     }
-    for (const Contour& contour : stitched.built) {
-        result.contours.push_back(turned(contour, -how.turn_rad));
-    }
-    if (!area_agrees(result.contours, found, inside, bounds, sliver_mm * length)) {
-        return std::nullopt;
-    }
-    result.contours = sorted(result.contours);
-    return result;
+    return results;
 }
 
-std::optional<RegionResult> evaluated(std::vector<Input> inputs, const Inside& inside,
-                                      const AreaBounds& bounds, const Widths& widths) {
+std::optional<std::vector<RegionResult>> evaluated(std::vector<Input> inputs,
+                                                   std::span<const Part> parts,
+                                                   const Widths& widths) {
     if (!std::all_of(inputs.begin(), inputs.end(),
                      [](const Input& input) { return region::is_finite(*input.contour); })) {
         return std::nullopt;
@@ -196,9 +231,17 @@ std::optional<RegionResult> evaluated(std::vector<Input> inputs, const Inside& i
         return std::tie(a.weight.a, a.weight.b) < std::tie(b.weight.a, b.weight.b);
     });
     for (const Attempt& how : attempts) {
-        if (auto result = attempt(inputs, inside, how, bounds, widths)) return result;
+        if (auto results = attempt(inputs, parts, how, widths)) return results;
     }
     return std::nullopt;
+}
+
+std::optional<RegionResult> evaluated(std::vector<Input> inputs, const Inside& inside,
+                                      const AreaBounds& bounds, const Widths& widths) {
+    const Part part{inside, bounds};
+    auto results = evaluated(std::move(inputs), std::span(&part, 1), widths);
+    if (!results) return std::nullopt;
+    return std::move(results->front());
 }
 
 void add(RegionResult& total, RegionResult part) {
@@ -260,6 +303,28 @@ RegionResult united_group(std::span<const Region> regions, const Widths& widths)
     return result ? std::move(*result) : unresolved(regions);
 }
 
+// Each operand's windings are a digit of a number: eight bits, as if it wound around nothing 128 times.
+constexpr std::size_t operands_per_number = most_operands / 2;
+constexpr int digit_bits = 8;
+constexpr std::uint32_t no_winding = 128, no_windings = 0x80808080;
+
+Winding weight_of(std::size_t operand) {
+    const int digit = 1 << (digit_bits * static_cast<int>(operand % operands_per_number));
+    return operand < operands_per_number ? Winding{digit, 0} : Winding{0, digit};
+}
+
+Membership membership(const Winding& winding) {
+    Membership result = 0;
+    std::uint32_t bit = 1;
+    for (const int number : {winding.a, winding.b}) {
+        std::uint32_t digits = static_cast<std::uint32_t>(number) + no_windings;
+        for (std::size_t i = 0; i < operands_per_number; ++i, digits >>= digit_bits, bit <<= 1) {
+            if ((digits & 0xff) > no_winding) result |= bit;
+        }
+    }
+    return result;
+}
+
 AreaBounds bounds_of(Operation operation, double a_mm2, double b_mm2) {
     switch (operation) {
         case Operation::unite:
@@ -296,8 +361,8 @@ RegionResult united(std::span<const Region> regions, double allowed_mm, double s
 RegionResult cleaned(Region contours, double allowed_mm, double sliver_mm) {
     std::vector<Input> inputs;
     for (const Contour& contour : contours) inputs.push_back({&contour, {1, 0}});
-    auto result = evaluated(std::move(inputs), [](const Winding& w) { return w.a > 0; },
-                            {0, std::numeric_limits<double>::infinity()}, {allowed_mm, sliver_mm});
+    auto result = evaluated(std::move(inputs), [](const Winding& w) { return w.a > 0; }, any_area,
+                            {allowed_mm, sliver_mm});
     return result ? std::move(*result) : unresolved(std::span(&contours, 1));
 }
 
@@ -321,6 +386,22 @@ RegionResult combined(Region a, Region b, Operation operation, double allowed_mm
         evaluated(std::move(inputs), inside, bounds_of(operation, area_mm2(a), area_mm2(b)),
                   {allowed_mm, sliver_mm});
     return result ? std::move(*result) : unresolved(std::span(&a, 1));
+}
+
+std::optional<std::vector<RegionResult>> overlaid(std::span<const Region> operands,
+                                                  std::span<const Wanted> wanted,
+                                                  double allowed_mm) {
+    if (operands.size() > most_operands) return std::nullopt;
+    std::vector<Input> inputs;
+    for (std::size_t i = 0; i < operands.size(); ++i) {
+        for (const Contour& contour : operands[i]) inputs.push_back({&contour, weight_of(i)});
+    }
+    std::vector<Part> parts;
+    for (const Wanted& is_wanted : wanted) {
+        parts.push_back({[&](const Winding& w) { return is_wanted(membership(w)); }, any_area});
+    }
+    if (parts.empty()) return std::vector<RegionResult>{};
+    return evaluated(std::move(inputs), parts, {allowed_mm, 0});
 }
 
 }  // namespace lyr

@@ -21,6 +21,9 @@
 
 #pragma once
 
+#include <cstdint>
+#include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -49,5 +52,17 @@ enum class Operation { unite, intersect, subtract };
 // If unresolved: a's contours.
 RegionResult combined(Region a, Region b, Operation operation, double allowed_mm,
                       double sliver_mm = 0);
+
+// Which operands a point is in: bit k for operand k.
+using Membership = std::uint32_t;
+using Wanted = std::function<bool(Membership)>;  // false of 0
+inline constexpr std::size_t most_operands = 8;
+
+// Several regions of the same operands in one go, for little more than the cost of one: for each `wanted`, the points
+// whose membership it takes. Where two of them meet, their boundaries have the same corners (what lies on one circle or
+// line may be joined in one and not in the other). None if unresolved, or of more than most_operands.
+std::optional<std::vector<RegionResult>> overlaid(std::span<const Region> operands,
+                                                  std::span<const Wanted> wanted,
+                                                  double allowed_mm);
 
 }  // namespace lyr

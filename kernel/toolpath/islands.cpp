@@ -23,4 +23,27 @@ std::uint32_t Islands::of(const Point2& point) const {
     return count();
 }
 
+namespace {
+
+// Contours that touch do so in corners.
+Point2 clear_point(const Contour& contour) {
+    const auto* path = std::get_if<Path>(&contour);
+    return path ? point_at(path->start, path->segments.front(), 0.5) : start_of(contour);
+}
+
+}  // namespace
+
+std::vector<std::vector<Contour>> parts_of(Region region) {
+    const Islands islands(region);
+    std::vector<std::vector<Contour>> parts;
+    for (const Contour& contour : region)
+        if (area_mm2(contour) > 0) parts.push_back({contour});
+    for (const Contour& contour : region) {
+        if (area_mm2(contour) > 0) continue;
+        const std::uint32_t part = islands.of(clear_point(contour));
+        if (part < parts.size()) parts[part].push_back(contour);
+    }
+    return parts;
+}
+
 }  // namespace lyr

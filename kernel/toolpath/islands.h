@@ -32,4 +32,7 @@ private:
     std::vector<Island> islands_;  // by area
 };
 
+// The parts by themselves: each an outer contour and the holes in it, numbered alike. Holes in none are left out.
+std::vector<std::vector<Contour>> parts_of(Region region);
+
 }  // namespace lyr

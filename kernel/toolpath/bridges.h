@@ -1,0 +1,34 @@
+// In which direction a bridge is hatched: across the air, from one side that holds it to another.
+//
+// Contract
+//  1. A line is held where its end, or the place half a line's spacing beyond it, is over the region below. Of all
+//     directions, that one is taken in which the most of the bridge is on lines held at both ends; of those that are
+//     as good within a fiftieth, the one whose longest line is the shortest; of those that are as short within a
+//     fiftieth, edges of the bridge come first.
+//  2. Directions asked are those of the bridge's longer straight edges, those across them, and 36 all round.
+//  3. Where no direction has at least half of the bridge held so, there is none: an overhang.
+//  4. The angle is in [0, pi). It turns with bridge and region.
+//
+// Lines are held better if the bridge reaches over its edge, as skins_of() makes it.
+
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "kernel/region/region.h"
+
+namespace lyr {
+
+struct Bridge {
+    std::vector<Contour> contours;    // an outer one and its holes
+    std::optional<double> angle_rad;  // none: an overhang
+};
+
+// Each part of the bridges for itself.
+std::vector<Bridge> bridges_over(Region bridges, Region below, double spacing_mm);
+
+// Of one part.
+std::optional<double> bridge_angle(Region bridge, Region below, double spacing_mm);
+
+}  // namespace lyr
