@@ -20,6 +20,10 @@ constexpr double slop_mm = 2e-6;
 // Below that, points are the same.
 constexpr double same_mm = 1e-9;
 
+// A disc that would be so much larger is taken for the one that an arc allows by itself: along a segment that goes on
+// almost straight from the arc, discs that touch both are that one but for round-off.
+constexpr double nearly_mm = 1e-7;
+
 // What is less than this is round-off in products of unit vectors.
 constexpr double least_product = 1e-14;
 
@@ -146,11 +150,23 @@ double InscribedDiscs::place(SiteId site, const Point2& centre) const {
     return std::clamp(at, 0.0, 1.0);
 }
 
+// A disc that is an arc's own touches it along its length: coming along the segment before or after, where that ends.
+double InscribedDiscs::other_place(SiteId site, double at, SiteId other, const Point2& centre,
+                                   double radius_mm) const {
+    if (site == other) return at;
+    const double k = curvature_per_mm(other);
+    if (k > 0 && radius_mm > 1 / k - nearly_mm && site % 2 == 0) {
+        if (other / 2 == next_[site / 2]) return 0;
+        if (other / 2 == previous_[site / 2]) return 1;
+    }
+    return place(other, centre);
+}
+
 Touch InscribedDiscs::touch_with(SiteId site, double at, SiteId other) const {
     const Foot from = foot(site, at);
     const double radius = std::max(0.0, radius_mm(site, at, other));
     const Point2 centre = from.point + radius * from.normal;
-    return {at, other, site == other ? at : place(other, centre), centre, radius};
+    return {at, other, other_place(site, at, other, centre, radius), centre, radius};
 }
 
 Touch InscribedDiscs::touch(SiteId site, double at) const {
@@ -167,6 +183,7 @@ Touch InscribedDiscs::touch(SiteId site, double at) const {
         if (!is_site(other) || is_passed_over(site, at, other)) return;
         const double radius = radius_mm(from, other);
         if (radius < 0 || radius > least || (radius == least && other >= found)) return;
+        if (radius > own_mm - nearly_mm) return;
         if (!is_beside(other, from.point + radius * from.normal)) return;
         least = radius;
         found = other;
@@ -181,7 +198,7 @@ Touch InscribedDiscs::touch(SiteId site, double at) const {
         for (SiteId other = 0; other < site_count(); ++other) consider(other);
     if (std::isinf(least)) return {at, site, at, from.point, 0};
     const Point2 centre = from.point + least * from.normal;
-    return {at, found, found == site ? at : place(found, centre), centre, least};
+    return {at, found, other_place(site, at, found, centre, least), centre, least};
 }
 
 bool InscribedDiscs::are_neighbours(SiteId site, SiteId other) const {

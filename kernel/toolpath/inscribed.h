@@ -71,6 +71,8 @@ private:
     double radius_mm(const Foot& foot, SiteId other) const;
     bool is_passed_over(SiteId site, double at, SiteId other) const;
     double place(SiteId site, const Point2& centre) const;
+    double other_place(SiteId site, double at, SiteId other, const Point2& centre,
+                       double radius_mm) const;
 
     Boundary boundary_;
     std::vector<Joint> joints_;                   // by the piece that ends there

@@ -86,21 +86,29 @@ private:
                std::abs(a.radius_mm - b.radius_mm) <= within_mm;
     }
 
+    // Whether a disc and the place where it touches the site are the same.
+    bool are_one(SiteId site, const Touch& a, const Touch& b) const {
+        const double whole =
+            site % 2 == 0 ? discs_.piece(site).length_mm : discs_.turn_rad(site) * a.radius_mm;
+        return std::abs(b.at - a.at) * whole <= same_mm && are_same(a, b);
+    }
+
     // Touches of one disc so that their others follow each other as they do before and after.
-    void sort(std::vector<Touch>& touches) const {
+    void sort(SiteId site) {
+        std::vector<Touch>& touches = touches_[site];
         std::sort(touches.begin(), touches.end(), [](const Touch& a, const Touch& b) {
             return a.at < b.at || (a.at == b.at && a.other < b.other);
         });
         for (std::size_t first = 0; first < touches.size();) {
             std::size_t last = first + 1;
-            while (last < touches.size() && are_same(touches[first], touches[last])) ++last;
-            for (std::size_t i = first; first > 0 && i < last; ++i)
-                if (touches[i].other == touches[first - 1].other)
-                    std::swap(touches[i], touches[first]);
-            const std::size_t after = first == 0 ? first : first + 1;
-            for (std::size_t i = after; last < touches.size() && i < last; ++i)
-                if (touches[i].other == touches[last].other)
-                    std::swap(touches[i], touches[last - 1]);
+            while (last < touches.size() && are_one(site, touches[first], touches[last])) ++last;
+            const auto move_to = [&](std::size_t place, SiteId other, std::size_t from) {
+                for (std::size_t i = from; i < last; ++i)
+                    if (touches[i].other == other) std::swap(touches[i], touches[place]);
+            };
+            if (first > 0) move_to(first, touches[first - 1].other, first);
+            if (last < touches.size())
+                move_to(last - 1, touches[last].other, first > 0 ? first + 1 : first);
             first = last;
         }
     }
@@ -108,7 +116,7 @@ private:
     // Whether there was a gap between touches of different sites.
     bool refine(SiteId site) {
         changed_[site] = false;
-        sort(touches_[site]);
+        sort(site);
         const std::vector<Touch> touches = touches_[site];
         for (std::size_t i = 0; i + 1 < touches.size(); ++i) {
             const Touch &a = touches[i], &b = touches[i + 1];
@@ -170,20 +178,25 @@ private:
 
     // The edges along a site; of two sites those along the first.
     void add_edges(SiteId site) {
-        std::vector<Touch>& touches = touches_[site];
-        sort(touches);
+        sort(site);
+        const std::vector<Touch>& touches = touches_[site];
         for (std::size_t first = 0; first < touches.size();) {
             std::size_t last = first;
             while (last + 1 < touches.size() && touches[last + 1].other == touches[first].other)
                 ++last;
             if (touches[first].other > site) add_edge(site, touches[first], touches[last]);
-            if (touches[first].other == site) add_sector(site, touches[first], touches[last]);
+            if (touches[first].other == site) add_sector(site, first, last);
             first = last + 1;
         }
     }
 
-    void add_sector(SiteId site, const Touch& first, const Touch& last) {
-        area_mm2_ += (last.at - first.at) * discs_.piece(site).length_mm * first.radius_mm / 2;
+    // Along which a disc is an arc's own.
+    void add_sector(SiteId site, std::size_t first, std::size_t last) {
+        const std::vector<Touch>& touches = touches_[site];
+        if (first > 0 && are_same(touches[first - 1], touches[first])) --first;
+        if (last + 1 < touches.size() && are_same(touches[last], touches[last + 1])) ++last;
+        area_mm2_ += (touches[last].at - touches[first].at) * discs_.piece(site).length_mm *
+                     touches[first].radius_mm / 2;
     }
 
     void add_edge(SiteId site, const Touch& first, const Touch& last) {
