@@ -93,6 +93,14 @@ private:
         return std::abs(b.at - a.at) * whole <= same_mm && are_same(a, b);
     }
 
+    static void move(std::vector<Touch>& touches, std::size_t from, std::size_t to) {
+        const auto at = [&](std::size_t i) {
+            return touches.begin() + static_cast<std::ptrdiff_t>(i);
+        };
+        if (from < to) std::rotate(at(from), at(from + 1), at(to + 1));
+        if (to < from) std::rotate(at(to), at(from), at(from + 1));
+    }
+
     // Touches of one disc so that their others follow each other as they do before and after.
     void sort(SiteId site) {
         std::vector<Touch>& touches = touches_[site];
@@ -102,13 +110,18 @@ private:
         for (std::size_t first = 0; first < touches.size();) {
             std::size_t last = first + 1;
             while (last < touches.size() && are_one(site, touches[first], touches[last])) ++last;
-            const auto move_to = [&](std::size_t place, SiteId other, std::size_t from) {
-                for (std::size_t i = from; i < last; ++i)
-                    if (touches[i].other == other) std::swap(touches[i], touches[place]);
-            };
-            if (first > 0) move_to(first, touches[first - 1].other, first);
-            if (last < touches.size())
-                move_to(last - 1, touches[last].other, first > 0 ? first + 1 : first);
+            if (first > 0) {
+                const SiteId before = touches[first - 1].other;
+                std::size_t i = first;
+                while (i + 1 < last && touches[i].other != before) ++i;
+                if (touches[i].other == before) move(touches, i, first);
+            }
+            if (last < touches.size()) {
+                std::size_t i = last - 1;
+                while (i > first + 1 && touches[i].other != touches[last].other) --i;
+                if (i > first && touches[i].other == touches[last].other)
+                    move(touches, i, last - 1);
+            }
             first = last;
         }
     }
