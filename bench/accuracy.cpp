@@ -15,11 +15,18 @@
 namespace lyr::bench {
 namespace {
 
-// A piece of a wall in the model's own coordinates.
+// A piece of an outermost wall's middle, in the model's own coordinates.
 struct WallPiece {
     Point2 start;
     Segment segment;
-    double z_mm;
+    double z_mm, width_mm;
+
+    // On the wall's outer flank, which is what is to lie on the surface.
+    Point2 flank_at(double fraction) const {
+        const Eigen::Rotation2Dd turned(fraction * sweep_rad(start, segment));
+        const Vector2 along = turned * start_tangent(start, segment);
+        return point_at(start, segment, fraction) + width_mm / 2 * Vector2(along.y(), -along.x());
+    }
 };
 
 // Follows the operations of a print and keeps the walls.
@@ -32,9 +39,8 @@ public:
     void operator()(const format::Operation& operation) {
         if (const auto* layer = std::get_if<format::LayerStart>(&operation))
             z_mm_ = (layer->index + 0.5) * layer_height_mm_ + origin_.z();
-        if (const auto* path = std::get_if<format::PathStart>(&operation))
-            is_wall_ = path->style.role == format::Role::outer_wall;
-        if (!is_wall_) return;
+        if (const auto* path = std::get_if<format::PathStart>(&operation)) style_ = path->style;
+        if (style_.role != format::Role::outer_wall) return;
         if (const auto* line = std::get_if<format::Line>(&operation))
             add(line->from, {at(line->to), 0});
         if (const auto* arc = std::get_if<format::Arc>(&operation))
@@ -50,7 +56,7 @@ private:
                origin_.head<2>();
     }
     void add(const format::Point& from, const Segment& segment) {
-        pieces_.push_back({at(from), segment, z_mm_});
+        pieces_.push_back({at(from), segment, z_mm_, style_.width_mm});
     }
     void add(const format::Circle& circle) {
         const Point2 from = at(circle.from);
@@ -60,13 +66,14 @@ private:
             origin_.head<2>();
         const Point2 opposite = 2 * centre - from;
         for (const auto& [start, end] : {std::pair(from, opposite), std::pair(opposite, from)})
-            pieces_.push_back({start, arc_with_sweep(start, end, std::numbers::pi), z_mm_});
+            pieces_.push_back(
+                {start, arc_with_sweep(start, end, std::numbers::pi), z_mm_, style_.width_mm});
     }
 
     double quantum_mm_, layer_height_mm_;
     Point3 origin_;
     double z_mm_ = 0;
-    bool is_wall_ = false;
+    format::PathStyle style_{};
     std::vector<WallPiece> pieces_;
 };
 
@@ -95,7 +102,7 @@ std::vector<Point3> points_along(const std::vector<WallPiece>& walls, std::size_
         for (;;) {
             const double next_mm = (static_cast<double>(points.size()) + 0.5) * spacing_mm;
             if (next_mm >= passed_mm + piece_mm || points.size() == count) break;
-            const Point2 at = point_at(wall.start, wall.segment, (next_mm - passed_mm) / piece_mm);
+            const Point2 at = wall.flank_at((next_mm - passed_mm) / piece_mm);
             points.push_back({at.x(), at.y(), wall.z_mm});
         }
         passed_mm += piece_mm;
@@ -106,7 +113,9 @@ std::vector<Point3> points_along(const std::vector<WallPiece>& walls, std::size_
 Result<std::vector<Point3>> printed_points(const std::string& step_path, double layer_height_mm,
                                            std::size_t count) {
     slicer::Options options;
-    options.profile.layer.height_mm = layer_height_mm;
+    options.profile.layer.height_mm = options.profile.layer.first_height_mm = layer_height_mm;
+    // Walls all along the outline, however narrow the part.
+    options.profile.perimeters.thin_walls = false;
     Diagnostics found;
     auto model = slicer::load(step_path, options, found);
     if (!model) return model.error();

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "bench/step_files.h"
 #include "bench/table.h"
 #include "kernel/toolpath/hatch.h"
+#include "kernel/toolpath/islands.h"
 #include "kernel/toolpath/layer_order.h"
 #include "kernel/toolpath/offset.h"
 #include "slicer/layers.h"
@@ -42,7 +44,7 @@ struct Layer {
 
 struct Totals {
     std::size_t files = 0, unread = 0, layers = 0, walls = 0, segments = 0, pieces = 0;
-    std::size_t ways = 0, bent = 0, cross = 0;
+    std::size_t ways = 0, bent = 0, cross = 0, cross_within = 0;
     double seams_s = 0, regions_s = 0, order_s = 0, ways_s = 0, longest_s = 0;
     double travel_mm = 0, made_mm = 0;
 };
@@ -78,6 +80,11 @@ Layer layer_of(std::vector<Contour> region, std::size_t number, const Arguments&
     return layer;
 }
 
+Point2 left_at(const Layer& layer, const PrintMove& move) {
+    if (move.is_wall) return move.seam.point;
+    return move.reversed ? layer.pieces[move.index].first : layer.pieces[move.index].last;
+}
+
 // Of the way to each move's start.
 double travel_of(const Layer& layer, const std::vector<PrintMove>& moves) {
     double travel = 0;
@@ -89,8 +96,7 @@ double travel_of(const Layer& layer, const std::vector<PrintMove>& moves) {
     for (const PrintMove& move : moves) {
         for (const Point2& point : move.travel.via) go(point);
         go(move.seam.point);
-        if (!move.is_wall)
-            head = move.reversed ? layer.pieces[move.index].first : layer.pieces[move.index].last;
+        head = left_at(layer, move);
     }
     return travel;
 }
@@ -105,6 +111,18 @@ double travel_as_made(const Layer& layer) {
     return travel_of(layer, moves);
 }
 
+void count_ways(const Layer& layer, const std::vector<PrintMove>& moves, Totals& totals) {
+    const Islands islands(layer.region);
+    std::uint32_t island = islands.count();
+    for (const PrintMove& move : moves) {
+        ++totals.ways;
+        totals.bent += move.travel.via.empty() ? 0 : 1;
+        const bool stays = islands.of(move.seam.point) == island;
+        if (move.travel.crosses) ++(stays ? totals.cross_within : totals.cross);
+        island = islands.of(left_at(layer, move));
+    }
+}
+
 void measure(const Layer& layer, const Arguments& arguments, double allowed_mm,
              std::vector<Seam>& seams, Totals& totals) {
     ++totals.layers;
@@ -115,7 +133,7 @@ void measure(const Layer& layer, const Arguments& arguments, double allowed_mm,
     const double seams_s =
         time_of_s([&] { seams = outer_seams(layer.walls, layer.depths, arguments.seam, seams); });
     LayerPlan plan{layer.region, layer.walls, layer.depths, seams, layer.pieces};
-    std::vector<PrintMove> moves;
+    std::vector<PrintMove> moves = layer_order(plan);  // both that are timed find it in the cache
     const double order_s = time_of_s([&] { moves = layer_order(plan); });
     std::optional<Detours> detours;
     const double region_s = time_of_s([&] { detours.emplace(layer.region, allowed_mm); });
@@ -126,11 +144,7 @@ void measure(const Layer& layer, const Arguments& arguments, double allowed_mm,
     totals.regions_s += region_s;
     totals.ways_s += both_s - order_s;
     totals.longest_s = std::max(totals.longest_s, seams_s + region_s + both_s);
-    for (const PrintMove& move : moves) {
-        ++totals.ways;
-        totals.bent += !move.travel.via.empty();
-        totals.cross += move.travel.crosses;
-    }
+    count_ways(layer, moves, totals);
     totals.travel_mm += travel_of(layer, moves);
     totals.made_mm += travel_as_made(layer);
 }
@@ -174,7 +188,8 @@ void print(const Totals& totals) {
          {"regions for detours, a layer", duration(totals.regions_s / layers)},
          {"ways, a layer", duration(totals.ways_s / layers)},
          {"the longest layer, all of it", duration(totals.longest_s)},
-         {"ways, bent, crossing", n(totals.ways) + ", " + n(totals.bent) + ", " + n(totals.cross)},
+         {"ways, bent", n(totals.ways) + ", " + n(totals.bent)},
+         {"crossing between parts, within one", n(totals.cross) + ", " + n(totals.cross_within)},
          {"travel, a layer", number(totals.travel_mm / layers) + " mm"},
          {"travel as made, a layer", number(totals.made_mm / layers) + " mm"}}});
 }

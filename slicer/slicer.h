@@ -7,7 +7,7 @@
 // Contract
 //  1. No output appears unless all of it is right: an error leaves the target as it was.
 //  2. The output depends on the input and the options, not on the number of threads.
-//  3. Layers are `layer.height_mm` thick; layer i is the section at its middle, (i + 1/2) of that over the bed, as
+//  3. Layers are `layer.height_mm` thick, the first one `layer.first_height_mm`; each is the section at its middle, as
 //     long as that is below the part's top. So a part of a whole number of layers has just as many, and a rest of
 //     less than half a layer is left off, of more than half counts as a layer.
 //  4. On the bed means: lowest point at z = 0, the bounding box's lower left corner at `plate.at_mm`.
@@ -46,7 +46,7 @@ struct Options {
 // Called from the calling thread only, with what is done of how much.
 using Progress = std::function<void(const char* stage, std::size_t done, std::size_t total)>;
 
-// Contours, lines and arcs are those printed, or those of the sections.
+// Contours, lines and arcs are those of the layers' outlines, or of the sections.
 struct Summary {
     std::size_t solids = 0, faces = 0, layers = 0, contours = 0, circles = 0, lines = 0, arcs = 0;
     std::size_t united_layers = 0;  // where solids overlapped or touched

@@ -51,11 +51,15 @@ BoundaryPiece piece_of(const Point2& start, const Segment& segment, std::uint32_
             .is_wide = s * s > half2};
 }
 
+// With the ends: a circle that has one of them as its lowest point must not begin above it, by round-off.
 region::Box2 circle_box(const BoundaryPiece& piece) {
     const double radius = 1 / piece.curvature_per_mm;
     const Point2 centre = piece.start + radius * left_of(piece.start_tangent);
     const Vector2 margin(std::abs(radius), std::abs(radius));
-    return {centre - margin, centre + margin};
+    // With the ends, which round-off may leave outside: their heights say which rays meet the chord.
+    return region::Box2(Point2(centre - margin), Point2(centre + margin))
+        .extend(piece.start)
+        .extend(piece.end);
 }
 
 // Not the least: that of the tangents' triangle, for what is at most a quarter of a circle.

@@ -41,6 +41,9 @@ struct BoundaryPiece {
 
     Carrier carrier() const { return {start, start_tangent, curvature_per_mm}; }
     BoundaryPoint at(double fraction) const;
+    region::Curve curve() const {
+        return {start, end, middle, middle_tangent, curvature_per_mm, length_mm / 2};
+    }
     double distance_mm(const Point2& point) const;
 };
 

@@ -1,13 +1,9 @@
 #include "kernel/toolpath/boundary_ruler.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
 namespace lyr {
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 // The part between two lengths from the start, which end in these points.
 Segment part_of(const BoundaryPiece& piece, const BoundaryPlace& from, const BoundaryPlace& to) {
@@ -19,19 +15,10 @@ Segment part_of(const BoundaryPiece& piece, const BoundaryPlace& from, const Bou
 
 BoundaryPlace place_on(std::span<const BoundaryPiece> boundary, std::uint32_t piece,
                        const Point2& point) {
-    const BoundaryPiece& on = boundary[piece];
-    const Vector2 chord = point - on.start;
-    const double k = on.curvature_per_mm;
-    double length = chord.dot(on.start_tangent);
-    if (k != 0) {
-        // Half of what the arc turns by up to the point, in [0, pi]: between its tangent and the chord. Round-off may
-        // take it just out of that.
-        const double turn = k > 0 ? 1 : -1;
-        const double half =
-            std::atan2(turn * cross(on.start_tangent, chord), chord.dot(on.start_tangent));
-        length = 2 * (half < -pi / 2 ? pi : half) / std::abs(k);
-    }
-    return {piece, std::clamp(length, 0.0, on.length_mm), point};
+    const region::Curve curve = boundary[piece].curve();
+    // Round-off may take it just out of the piece.
+    const double along = std::clamp(region::along_mm(curve, point), -curve.half_mm, curve.half_mm);
+    return {piece, along + curve.half_mm, point};
 }
 
 BoundaryRuler::BoundaryRuler(std::span<const BoundaryPiece> pieces) : pieces_(pieces) {

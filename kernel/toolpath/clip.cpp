@@ -9,12 +9,6 @@
 namespace lyr {
 namespace {
 
-region::Curve curve_of(const BoundaryPiece& piece) {
-    return {
-        piece.start,        piece.end, piece.middle, piece.middle_tangent, piece.curvature_per_mm,
-        piece.length_mm / 2};
-}
-
 // A place on the path.
 struct Spot {
     std::size_t segment = 0;
@@ -89,7 +83,7 @@ private:
     }
 
     void add_crossings(std::size_t segment, const region::Curve& curve, std::uint32_t index) {
-        const region::Curve boundary = curve_of(region_.pieces()[index]);
+        const region::Curve boundary = region_.pieces()[index].curve();
         const auto along = [](const region::Curve& of,
                               const Point2& point) -> std::optional<double> {
             const double at = region::along_mm(of, point);

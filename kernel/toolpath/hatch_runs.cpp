@@ -1,8 +1,8 @@
 // Runs grow upwards from the lowest interval that is left, on whichever side gives more links.
 //
 // Why a link is safe: between its ends the boundary goes from one row to the next without meeting either in between, and
-// is nowhere deeper in the region than the limit. Whatever else is near would have to cross one of the two rows within
-// their intervals, or lie wholly between them: contours that do are looked at one by one.
+// is nowhere deeper in the region than the limit. Whatever else there is between the two rows lies wholly on one side of
+// the link.
 
 #include "kernel/toolpath/hatch_runs.h"
 
@@ -17,54 +17,66 @@ namespace {
 
 using Index = std::uint32_t;
 
-// A contour that no row meets.
-struct BetweenRows {
-    Index row_above;
-    double low_x_mm, high_x_mm;
+// The curves that each strip between two rows holds; strip k is below row k.
+struct Strips {
+    std::vector<Index> start;
+    std::vector<Index> curves;
+
+    std::span<const Index> curves_of(Index strip) const {
+        return {curves.data() + start[strip], curves.data() + start[strip + 1]};
+    }
 };
 
-std::vector<BetweenRows> contours_between_rows(const Rows& rows) {
-    std::vector<BetweenRows> found;
-    for (Index first = 0; first < rows.curves.size();) {
-        BetweenRows contour{rows.curves[first].first_row, rows.curves[first].low.x(),
-                            rows.curves[first].low.x()};
-        bool met = false;
-        Index i = first;
-        do {
+Strips strips_of(const Rows& rows) {
+    Strips strips{std::vector<Index>(rows.count() + 2, 0), {}};
+    const auto for_strips = [&](auto take) {
+        for (Index i = 0; i < rows.curves.size(); ++i) {
             const RowCurve& curve = rows.curves[i];
-            met = met || curve.first_row < curve.last_row;
-            // Arcs bulge sideways by their radius at most.
-            const double bulge = curve.is_arc ? curve.radius_mm : 0;
-            contour.low_x_mm =
-                std::min({contour.low_x_mm, curve.low.x() - bulge, curve.high.x() - bulge});
-            contour.high_x_mm =
-                std::max({contour.high_x_mm, curve.low.x() + bulge, curve.high.x() + bulge});
-            i = curve.next;
-        } while (i != first);
-        if (!met) found.push_back(contour);
-        first = rows.curves[first].previous + 1;
-    }
-    std::sort(found.begin(), found.end(),
-              [](const BetweenRows& a, const BetweenRows& b) { return a.row_above < b.row_above; });
-    return found;
+            for (Index strip = curve.first_row; strip <= curve.last_row; ++strip) take(strip, i);
+        }
+    };
+    for_strips([&](Index strip, Index) { ++strips.start[strip + 1]; });
+    for (std::size_t i = 1; i < strips.start.size(); ++i) strips.start[i] += strips.start[i - 1];
+    strips.curves.resize(strips.start.back());
+    std::vector<Index> next = strips.start;
+    for_strips([&](Index strip, Index i) { strips.curves[next[strip]++] = i; });
+    return strips;
 }
 
-// How far the arc from one point to another reaches to the left of its chord.
-double left_bulge_mm(const RowCurve& curve, const Point2& from, const Point2& to) {
+// Over the chord of two of its points; it is no more than a semicircle.
+double bulge_mm(const RowCurve& curve, const Point2& a, const Point2& b) {
     if (!curve.is_arc) return 0;
-    const Vector2 chord = to - from;
-    if (cross(chord, curve.centre - from) >= 0) return 0;
-    const double half2 = chord.squaredNorm() / 4, r = curve.radius_mm;
+    const double half2 = (b - a).squaredNorm() / 4, r = curve.radius_mm;
     return half2 / (r + std::sqrt(std::max(0.0, r * r - half2)));
+}
+
+// The part of a curve between two heights.
+struct CurvePart {
+    Point2 low, high;
+    double left_mm, right_mm;  // as far as it reaches
+    double bulge_mm;           // over its chord
+};
+
+CurvePart part_between(const RowCurve& curve, double low_y, double high_y) {
+    const auto at = [&](const Point2& end, double y) {
+        return end.y() == y ? end : Point2(crossing_x_mm(curve, y), y);
+    };
+    const Point2 low = at(curve.low, std::max(low_y, curve.low.y()));
+    const Point2 high = at(curve.high, std::min(high_y, curve.high.y()));
+    CurvePart part{low, high, std::min(low.x(), high.x()), std::max(low.x(), high.x()),
+                   bulge_mm(curve, low, high)};
+    if (!curve.is_arc) return part;
+    if (low.y() < curve.centre.y() && curve.centre.y() < high.y()) {
+        if (curve.right_half) part.right_mm = curve.centre.x() + curve.radius_mm;
+        if (!curve.right_half) part.left_mm = curve.centre.x() - curve.radius_mm;
+    }
+    return part;
 }
 
 class RunBuilder {
 public:
     RunBuilder(const Rows& rows, const LinkLimits& limits)
-        : rows_(rows),
-          limits_(limits),
-          between_(contours_between_rows(rows)),
-          used_(rows.spans.size(), false) {}
+        : rows_(rows), limits_(limits), strips_(strips_of(rows)), used_(rows.spans.size(), false) {}
 
     std::vector<HatchRun> runs() {
         std::vector<HatchRun> runs;
@@ -197,23 +209,37 @@ private:
             const bool rises = curve.falls != right;
             const Point2 end = i == to.curve ? to.point : (rises ? curve.high : curve.low);
             const double end_off = inwards * cross(link, end - from.point) / length;
-            const double bulge =
-                right ? left_bulge_mm(curve, at, end) : left_bulge_mm(curve, end, at);
+            // Material is to the left of right ends: there, left halves of circles bulge into it.
+            const double bulge = curve.right_half != right ? bulge_mm(curve, at, end) : 0;
             if (std::max({0.0, at_off, end_off}) + bulge > limits_.stray_mm) return false;
             if (i == to.curve) break;
             at = end;
             at_off = end_off;
         }
-        return !is_blocked(row, std::min(from.point.x(), to.point.x()),
-                           std::max(from.point.x(), to.point.x()));
+        return !is_blocked(row, from, to, right);
     }
 
-    bool is_blocked(Index row, double low_x_mm, double high_x_mm) const {
-        auto contour = std::lower_bound(
-            between_.begin(), between_.end(), row + 1,
-            [](const BetweenRows& c, Index row_above) { return c.row_above < row_above; });
-        for (; contour != between_.end() && contour->row_above == row + 1; ++contour) {
-            if (contour->low_x_mm <= high_x_mm && low_x_mm <= contour->high_x_mm) return true;
+    // By anything but the boundary that it runs along: an opposite wall, a contour between the rows.
+    bool is_blocked(Index row, const LinkEnd& from, const LinkEnd& to, bool right) const {
+        const double left_mm = std::min(from.point.x(), to.point.x());
+        const double right_mm = std::max(from.point.x(), to.point.x());
+        const Vector2 link = to.point - from.point, along = link / link.norm();
+        for (const Index i : strips_.curves_of(row + 1)) {
+            if (i == from.curve || i == to.curve) continue;
+            const CurvePart part = part_between(rows_.curves[i], from.point.y(), to.point.y());
+            if (part.left_mm > right_mm || part.right_mm < left_mm) continue;
+            const double low = cross(along, part.low - from.point);
+            const double high = cross(along, part.high - from.point);
+            const bool beside =
+                (low > 0) == (high > 0) && std::min(std::abs(low), std::abs(high)) > part.bulge_mm;
+            if (!beside && !is_between(i, from.curve, to.curve, right)) return true;
+        }
+        return false;
+    }
+
+    bool is_between(Index curve, Index from, Index to, bool right) const {
+        for (Index i = from; i != to; i = upwards(i, right)) {
+            if (i == curve) return true;
         }
         return false;
     }
@@ -240,7 +266,7 @@ private:
 
     const Rows& rows_;
     LinkLimits limits_;
-    std::vector<BetweenRows> between_;
+    Strips strips_;
     std::vector<bool> used_;
 };
 

@@ -1,7 +1,8 @@
 // Regions of lines and arcs made larger or smaller by a distance. No arc becomes a polygon.
 //
 // A region is as in kernel/region: closed contours with the material on the left that wind around no point more than
-// once, as those of a section or of united() do.
+// once, as those of united() do. A section that crosses itself, where faces of its model overlap a little, is to be
+// cleaned() first. docs/algorithms/offset.md says by what method, and why it is right.
 //
 // Contract
 //  1. Outwards (distance > 0): every point within the distance of the region; inwards: every point of it that is

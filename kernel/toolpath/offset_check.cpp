@@ -186,7 +186,8 @@ Check::Fault Check::wrong_area() const {
     const double area = area_mm2(contours_), source = std::max(0.0, area_mm2(source_contours_));
     const double disc = std::sqrt(pi) * distance_mm_, root = std::sqrt(source);
     const double covered = covered_mm2();
-    const double least = outwards_ ? (root + disc) * (root + disc) : source - covered;
+    const double sum = source > 0 ? (root + disc) * (root + disc) : 0;
+    const double least = outwards_ ? sum : source - covered;
     const double inner = std::max(0.0, root - disc);
     const double most = outwards_ ? source + covered : inner * inner;
     if (area >= least - slack_mm2 && area <= most + slack_mm2) return std::nullopt;

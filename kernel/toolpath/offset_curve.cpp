@@ -23,6 +23,8 @@ Vector2 right_of(const Vector2& direction) {
 
 // A segment and its parallel.
 struct Side {
+    bool is_line() const { return sagitta_mm == 0 && !centre; }
+
     Point2 end;  // of the segment: the corner that follows
     Vector2 start_tangent, end_tangent;
     Point2 parallel_start, parallel_end;  // at the distance beside the segment's ends
@@ -77,12 +79,17 @@ private:
     enum class Joint { smooth, round, mitre, crossing };
 
     const Side& after(std::size_t i) const { return sides_[(i + 1) % sides_.size()]; }
+    std::size_t before(std::size_t i) const { return (i == 0 ? sides_.size() : i) - 1; }
     double turn_rad(std::size_t i) const;
     Joint joint_at(std::size_t i) const;
+    bool is_mitred(std::size_t i) const {
+        return request_.corner == Corner::mitre && joint_at(i) == Joint::mitre;
+    }
     Point2 mitre_at(std::size_t i) const;
     void line_to(const Point2& point);
     void segment_to(const Segment& segment);
-    void add_side(const Side& side);
+    Point2 start() const;
+    void add_side(std::size_t i);
     void add_joint(std::size_t i);
 
     std::vector<Side> sides_;
@@ -94,8 +101,8 @@ private:
 
 // At the corner that follows a side, to the left.
 double CurveBuilder::turn_rad(std::size_t i) const {
-    const Vector2 &before = sides_[i].end_tangent, &behind = after(i).start_tangent;
-    const double turn = std::atan2(cross(before, behind), before.dot(behind));
+    const Vector2 &from = sides_[i].end_tangent, &to = after(i).start_tangent;
+    const double turn = std::atan2(cross(from, to), from.dot(to));
     const bool is_cusp = std::abs(turn) > std::numbers::pi - cusp_rad;
     return is_cusp && turn * distance_mm_ < 0 ? turn + std::copysign(full_turn_rad, distance_mm_)
                                               : turn;
@@ -128,10 +135,13 @@ void CurveBuilder::segment_to(const Segment& segment) {
     at_ = segment.end;
 }
 
-void CurveBuilder::add_side(const Side& side) {
+// A line that comes from a mitre is one line from there, as it is one to the next mitre.
+void CurveBuilder::add_side(std::size_t i) {
+    const Side& side = sides_[i];
     if (side.centre) return line_to(*side.centre);
-    line_to(side.parallel_start);
-    segment_to({side.parallel_end, side.sagitta_mm});
+    if (!side.is_line() || !is_mitred(before(i))) line_to(side.parallel_start);
+    const bool to_mitre = side.is_line() && is_mitred(i);
+    segment_to({to_mitre ? mitre_at(i) : side.parallel_end, side.sagitta_mm});
 }
 
 void CurveBuilder::add_joint(std::size_t i) {
@@ -141,20 +151,27 @@ void CurveBuilder::add_joint(std::size_t i) {
         case Joint::crossing:
             return line_to(sides_[i].end);
         case Joint::mitre:
-            line_to(sides_[i].parallel_end);
+            if (!sides_[i].is_line()) line_to(sides_[i].parallel_end);
             line_to(mitre_at(i));
-            return line_to(after(i).parallel_start);
+            if (!after(i).is_line()) line_to(after(i).parallel_start);
+            return;
         case Joint::round:
             line_to(sides_[i].parallel_end);
             return segment_to(arc_with_sweep(at_, after(i).parallel_start, turn_rad(i)));
     }
 }
 
+Point2 CurveBuilder::start() const {
+    const std::size_t last = before(0);
+    if (sides_[0].centre) return *sides_[0].centre;
+    return sides_[0].is_line() && is_mitred(last) ? mitre_at(last) : sides_[0].parallel_start;
+}
+
 std::optional<Contour> CurveBuilder::result() {
     if (sides_.empty()) return std::nullopt;
-    at_ = path_.start = sides_[0].centre ? *sides_[0].centre : sides_[0].parallel_start;
+    at_ = path_.start = start();
     for (std::size_t i = 0; i < sides_.size(); ++i) {
-        add_side(sides_[i]);
+        add_side(i);
         add_joint(i);
     }
     line_to(path_.start);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
 namespace lyr {
 namespace {
@@ -12,39 +11,42 @@ constexpr std::uint32_t leaf_size = 8;
 
 constexpr std::uint32_t no_node = ~std::uint32_t{0};
 
+template <class List>
+std::uint32_t count_of(const List& list) {
+    return static_cast<std::uint32_t>(list.size());
+}
+
 }  // namespace
 
-PointTree::PointTree(std::span<const Point2> points)
-    : points_(points.begin(), points.end()),
-      items_(points.size()),
-      leaf_of_(points.size()),
-      removed_(points.size()) {
-    std::iota(items_.begin(), items_.end(), 0u);
+PointTree::PointTree(std::span<const Point2> points) : leaf_of_(points.size()) {
+    items_.reserve(points.size());
+    for (const Point2& point : points) items_.push_back({point, count_of(items_)});
     nodes_.reserve(points.size() / 2 + 1);
-    if (!items_.empty()) build(0, static_cast<std::uint32_t>(items_.size()), no_node);
+    if (!items_.empty()) build(0, count_of(items_), no_node);
 }
 
 void PointTree::build(std::uint32_t first, std::uint32_t last, std::uint32_t parent) {
-    const auto index = static_cast<std::uint32_t>(nodes_.size());
+    const auto index = count_of(nodes_);
     Eigen::AlignedBox2d box;
-    for (std::uint32_t i = first; i < last; ++i) box.extend(points_[items_[i]]);
+    for (std::uint32_t i = first; i < last; ++i) box.extend(items_[i].point);
     nodes_.push_back({box.min(), box.max(), first, last, 0, parent, last - first});
     if (last - first <= leaf_size) {
-        for (std::uint32_t i = first; i < last; ++i) leaf_of_[items_[i]] = index;
+        for (std::uint32_t i = first; i < last; ++i) leaf_of_[items_[i].index] = index;
         return;
     }
     const int axis = box.sizes().x() >= box.sizes().y() ? 0 : 1;
     const std::uint32_t middle = first + (last - first) / 2;
-    std::nth_element(
-        items_.begin() + first, items_.begin() + middle, items_.begin() + last,
-        [&](std::uint32_t a, std::uint32_t b) { return points_[a][axis] < points_[b][axis]; });
+    std::nth_element(items_.begin() + first, items_.begin() + middle, items_.begin() + last,
+                     [&](const Item& a, const Item& b) { return a.point[axis] < b.point[axis]; });
     build(first, middle, index);
-    nodes_[index].second = static_cast<std::uint32_t>(nodes_.size());
+    nodes_[index].second = count_of(nodes_);
     build(middle, last, index);
 }
 
 void PointTree::remove(std::uint32_t index) {
-    removed_[index] = true;
+    const Node& leaf = nodes_[leaf_of_[index]];
+    for (std::uint32_t i = leaf.first; i < leaf.last; ++i)
+        items_[i].removed |= items_[i].index == index;
     for (std::uint32_t node = leaf_of_[index]; node != no_node; node = nodes_[node].parent)
         --nodes_[node].left;
 }
@@ -82,9 +84,9 @@ private:
         return a.square_mm2 < b.square_mm2 || (a.square_mm2 == b.square_mm2 && a.index < b.index);
     }
 
-    void take(std::uint32_t point) {
-        const Found found{(tree_.points_[point] - place_).squaredNorm(), point};
-        if (found.square_mm2 > limit_mm2_ || tree_.removed_[point]) return;
+    void take(const Item& item) {
+        const Found found{(item.point - place_).squaredNorm(), item.index};
+        if (found.square_mm2 > limit_mm2_ || item.removed) return;
         if (found_.size() < most_) {
             found_.push_back(found);
         } else if (!is_nearer(found, found_.back())) {

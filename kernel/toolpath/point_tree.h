@@ -36,14 +36,17 @@ private:
         std::uint32_t first, last, second, parent;
         std::uint32_t left;  // not taken out
     };
+    struct Item {
+        Point2 point;
+        std::uint32_t index;
+        bool removed = false;
+    };
     class Search;
 
     void build(std::uint32_t first, std::uint32_t last, std::uint32_t parent);
 
-    std::vector<Point2> points_;
-    std::vector<std::uint32_t> items_;
+    std::vector<Item> items_;
     std::vector<std::uint32_t> leaf_of_;  // by point
-    std::vector<std::uint8_t> removed_;   // by point
     std::vector<Node> nodes_;
 };
 

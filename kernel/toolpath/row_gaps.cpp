@@ -117,24 +117,26 @@ private:
             i = rows_.curves[i].next;
         } while (i != first);
         const double middle = (low + high) / 2;
-        std::optional<double> left, right;  // where the material begins and where it ends
-        do {
-            const RowCurve& curve = rows_.curves[i];
-            if (curve.low.y() < middle && curve.high.y() >= middle) {
-                const double x = crossing_x_mm(curve, middle);
-                if (curve.falls && (!left || x < *left)) left = x;
-                if (!curve.falls && (!right || x > *right)) right = x;
-            }
-            i = curve.next;
-        } while (i != first);
-        const bool is_hole = left && right && *left > *right;
-        if (is_hole) return;
-        if (left && right && *right - *left > resolution_mm) {
-            found_.paths.push_back(
-                {rows_.in_plane(*left, middle), {{rows_.in_plane(*right, middle)}}});
-        } else {
-            ++found_.islands_left_out;
+        const auto is_own = [&](const RowEnd& end) {
+            return contour_of(end.curve) == contour_of(first);
+        };
+        const std::size_t before = found_.paths.size();
+        std::optional<bool> is_hole;
+        for (const RowSpan& span : spans_at(rows_, middle)) {
+            const bool starts = is_own(span.start), ends = is_own(span.end);
+            if (!starts && !ends) continue;
+            // The first thing to be met from the left of a hole is where the material around it ends.
+            if (!is_hole) is_hole = !starts;
+            if (*is_hole) return;
+            if (span.end.x_mm - span.start.x_mm <= resolution_mm) continue;
+            found_.paths.push_back({rows_.in_plane(span.start.x_mm, middle),
+                                    {{rows_.in_plane(span.end.x_mm, middle)}}});
         }
+        if (found_.paths.size() == before) ++found_.islands_left_out;
+    }
+
+    std::uint32_t contour_of(Index curve) const {
+        return boundary_[rows_.curves[curve].piece].contour;
     }
 
     std::span<const BoundaryPiece> boundary_;

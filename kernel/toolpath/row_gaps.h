@@ -4,7 +4,7 @@
 // Contract
 //  1. Where the boundary turns back between two rows and is farther than `beyond_mm` from the row that faces it, the
 //     result goes along the boundary. What is left between them and the rows is no wider than that.
-//  2. An island between two rows is crossed by one line at half its height.
+//  2. An island between two rows is crossed at half its height.
 //  3. Along the boundary nothing is shorter than `shortest_mm`. Islands without length at that height are counted.
 
 #pragma once

@@ -176,13 +176,29 @@ std::int64_t number_rows(std::vector<RowCurve>& curves, const RowGrid& grid, std
 }  // namespace
 
 double crossing_x_mm(const RowCurve& curve, double y_mm) {
+    // A row's height is rounded, a curve that is nearly level may be no higher than that: it must not be followed beyond
+    // its ends.
+    const double y = std::clamp(y_mm, curve.low.y(), curve.high.y());
     if (!curve.is_arc) {
-        const double share = (y_mm - curve.low.y()) / (curve.high.y() - curve.low.y());
+        const double share = (y - curve.low.y()) / (curve.high.y() - curve.low.y());
         return curve.low.x() + share * (curve.high.x() - curve.low.x());
     }
-    const double across = y_mm - curve.centre.y(), r = curve.radius_mm;
+    const double across = y - curve.centre.y(), r = curve.radius_mm;
     const double half = std::sqrt(std::max(0.0, (r - across) * (r + across)));
     return curve.centre.x() + (curve.right_half ? half : -half);
+}
+
+std::vector<RowSpan> spans_at(const Rows& rows, double y_mm) {
+    std::vector<Crossing> crossings;
+    for (std::uint32_t i = 0; i < rows.curves.size(); ++i) {
+        const RowCurve& curve = rows.curves[i];
+        if (curve.low.y() < y_mm && curve.high.y() >= y_mm)
+            crossings.push_back({crossing_x_mm(curve, y_mm), i, curve.falls ? 1 : -1});
+    }
+    sort(crossings);
+    std::vector<RowSpan> spans;
+    append_spans(crossings, spans);
+    return spans;
 }
 
 Rows rows_across(std::span<const BoundaryPiece> boundary, const RowGrid& grid) {

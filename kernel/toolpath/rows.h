@@ -69,6 +69,9 @@ struct Rows {
 
 double crossing_x_mm(const RowCurve& curve, double y_mm);
 
+// Of a row at any height, which belongs to no grid.
+std::vector<RowSpan> spans_at(const Rows& rows, double y_mm);
+
 Rows rows_across(std::span<const BoundaryPiece> boundary, const RowGrid& grid);
 
 }  // namespace lyr

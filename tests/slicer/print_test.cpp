@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <set>
 
 #include "format/reader.h"
@@ -53,17 +54,21 @@ TEST_CASE("the gearbox base is 150 layers, and every vertical bore a circle in e
 
     auto reader = format::Reader::open(lyr);
     REQUIRE(reader);
-    std::size_t layers = 0, circles_below = 0;
+    std::size_t layers = 0;
+    // By centre: the circles of one layer about it, which are walls of one bore.
+    std::map<std::pair<std::int64_t, std::int64_t>, std::size_t> circles_below;
     for (;;) {
         auto operation = reader->next();
         REQUIRE(operation);
         if (!*operation) break;
         if (std::holds_alternative<format::LayerStart>(**operation)) ++layers;
-        if (layers == 10 && std::holds_alternative<format::Circle>(**operation)) ++circles_below;
+        const auto* circle = std::get_if<format::Circle>(&**operation);
+        if (layers == 10 && circle) ++circles_below[{circle->center_x, circle->center_y}];
     }
     CHECK(layers == 150);
     // Seven of the eight loops at z = 1.9 are bores.
-    CHECK(circles_below == 7);
+    CHECK(circles_below.size() == 7);
+    for (const auto& [centre, walls] : circles_below) CHECK(walls == profile::Perimeters{}.count);
 }
 
 TEST_CASE("slicer 2: the same bytes for one, two and five threads") {
@@ -71,7 +76,7 @@ TEST_CASE("slicer 2: the same bytes for one, two and five threads") {
         std::set<std::string> results;
         for (const unsigned threads : {1u, 2u, 5u}) {
             Options options;
-            options.profile.layer.height_mm = 0.5;
+            options.profile.layer.height_mm = options.profile.layer.first_height_mm = 0.5;
             options.threads = threads;
             REQUIRE(print_part(file, scratch("threads.lyr"), options));
             results.insert(bytes_of(scratch("threads.lyr")));
@@ -85,7 +90,7 @@ TEST_CASE("slicer 4: the part stands on the bed at its place, whichever side is 
          {Vector3(0, 0, 1), Vector3(0, 0, -1), Vector3(1, 0, 0), Vector3(0, -1, 0)}) {
         Options options;
         options.up = up;
-        options.profile.layer.height_mm = 1;
+        options.profile.layer.height_mm = options.profile.layer.first_height_mm = 1;
         options.profile.plate.at_mm = {20, 30};
         const auto summary = print_part("gearbox_base.step", scratch("up.lyr"), options);
         REQUIRE(summary);
@@ -125,7 +130,7 @@ TEST_CASE("slicer 1: a print that fails leaves the old file and nothing else") {
 
 TEST_CASE("slicer: a print has its settings within it, and those of the material in its metadata") {
     Options options;
-    options.profile.layer.height_mm = 1;
+    options.profile.layer.height_mm = options.profile.layer.first_height_mm = 1;
     options.profile.filament = {"ABS", 2.85, 1.04, 0, 12, 1};
     options.profile.temperature = {230, 240, 100, 110, 0};
     options.profile.speed.travel_mm_s = 123;

@@ -155,10 +155,7 @@ TEST_CASE(
             } while (pieces[piece].contour != contour);
             const BoundaryPiece& on = pieces[piece];
             const double along = random.within(0, 1) * on.length_mm;
-            const region::Curve curve{
-                on.start,        on.end, on.middle, on.middle_tangent, on.curvature_per_mm,
-                on.length_mm / 2};
-            return place_on(pieces, piece, point_on(curve, along - on.length_mm / 2));
+            return place_on(pieces, piece, point_on(on.curve(), along - on.length_mm / 2));
         };
         const auto contour = static_cast<std::uint32_t>(i % static_cast<int>(region.size()));
         const BoundaryPlace a = somewhere(contour), b = somewhere(contour);

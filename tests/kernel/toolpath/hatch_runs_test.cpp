@@ -120,6 +120,38 @@ TEST_CASE("hatch_runs 3: no link goes through a hole that lies between two rows"
     CHECK(links(filled.runs) == 4);
 }
 
+TEST_CASE("hatch_runs 3: no link goes through an opposite wall that bulges between two rows") {
+    // The hole touches the rounded end from inside, halfway between two rows.
+    for (const double gap : {1e-3, 0.05, 0.2}) {
+        const Contours region{FullCircle{{0, 0}, 1, true}, FullCircle{{-0.5 + gap, 0}, 0.5, false}};
+        for (int i = 0; i < 12; ++i) {
+            const Contours turned = moved(region, {.angle_rad = i * pi / 6 + 0.01});
+            for (const double pitch : {0.2, 0.5, 0.7}) check_runs(turned, fill(turned, 0, pitch));
+        }
+    }
+}
+
+TEST_CASE(
+    "hatch_runs 3: no link goes through a half circle between two rows, whose centre is on the "
+    "link") {
+    for (const bool mirrored : {false, true}) {
+        for (int quarter = 0; quarter < 4; ++quarter) {
+            const Motion motion{.angle_rad = quarter * pi / 2, .mirrored = mirrored};
+            Path path{{0, 0}, {{{4, 0}}}};
+            path.segments.push_back({{4, 1}});
+            path.segments.push_back(arc_with_sweep({4, 1}, {4, 1.5}, -pi));
+            path.segments.push_back({{4, 4}});
+            path.segments.push_back({{0, 4}});
+            path.segments.push_back({{0, 0}});
+            const Contours region{moved(Contour(path), motion)};
+            for (const double pitch : {0.5, 1.0}) {
+                check_runs(region, fill(region, quarter * pi / 2, pitch));
+                check_runs(region, fill(region, 0, pitch));
+            }
+        }
+    }
+}
+
 TEST_CASE("hatch_runs: a run that is reversed is the same rows and links the other way round") {
     const Contours region{rectangle(-20, -20, 20, 20), FullCircle{{1, 2}, 6, false}};
     for (const double pitch : {0.4, 0.41, 0.9}) {

@@ -38,13 +38,13 @@ std::size_t pieces(const Fill& fill) {
 }
 
 // How far what is printed leaves the region, links and all.
-void check_inside(const Contours& region, const Fill& fill) {
+void check_inside(const Contours& region, const Fill& fill, double link_mm = stray_mm) {
     const Boundary boundary(region);
     constexpr double step_mm = 0.3;
     for (const PrintedLine& line : lines_of(fill)) {
         const double length = lyr::length_mm(line.start, line.segment);
         const int steps = 2 + static_cast<int>(length / step_mm);
-        const double within = line.is_link ? stray_mm : allowed_mm;
+        const double within = line.is_link ? link_mm : allowed_mm;
         double worst = 0;
         for (int i = 0; i <= steps; ++i) {
             const Point2 at = point_at(line.start, line.segment, static_cast<double>(i) / steps);
@@ -134,6 +134,37 @@ TEST_CASE("infill 2: no line leaves random regions") {
         const double density = random.coin() ? 1 : random.within(0.1, 0.9);
         const Fill fill = infill(region, request(pattern, density, random.within(0, 3)));
         check_inside(region, fill);
+    }
+}
+
+TEST_CASE("infill 2: no line leaves regions whose edges and corners lie on rows") {
+    // Lines half a millimetre apart, corners on multiples of a quarter.
+    const double wide_mm = 0.5 + height_mm * (1 - pi / 4);
+    Random random(21);
+    const auto coordinate = [&] { return 0.25 * random.whole(-24, 24); };
+    for (int i = 0; i < 60; ++i) {
+        CAPTURE(i);
+        std::vector<Contours> shapes;
+        for (int k = random.whole(1, 5); k > 0; --k) {
+            const double x = coordinate(), y = coordinate();
+            if (random.whole(0, 2) == 0) {
+                shapes.push_back({FullCircle{{x, y}, 0.25 * random.whole(1, 12), true}});
+            } else {
+                shapes.push_back({rectangle(x, y, x + 0.25 * random.whole(1, 20),
+                                            y + 0.25 * random.whole(1, 20))});
+            }
+        }
+        Contours region = unite_all(shapes, 1e-4).contours;
+        const Contours cut{slot(-2, -0.5, 2, 0.5), FullCircle{{0, 3}, 1, true}};
+        region = combined(region, cut, Operation::subtract, 1e-4).contours;
+        const InfillPattern pattern = patterns[random.whole(0, std::size(patterns) - 1)];
+        InfillRequest asked =
+            request(pattern, random.coin() ? 1 : 0.25, pi / 4 * random.whole(0, 7),
+                    static_cast<std::size_t>(random.whole(0, 3)));
+        asked.width_mm = wide_mm;
+        const Fill fill = infill(region, asked);
+        CHECK(fill.unresolved == 0);
+        check_inside(region, fill, allowed_mm + wide_mm / 20);
     }
 }
 
@@ -247,6 +278,18 @@ TEST_CASE("infill 7: a region that lies between two rows is not empty, whatever 
         const Contours point{FullCircle{{1, 5 + 0.04 * i}, 0.01, true}};
         const Fill dot = infill(point, request(InfillPattern::aligned, 1, 0.3));
         CHECK(pieces(dot) + dot.left_out == 1);
+    }
+}
+
+TEST_CASE("infill 2: no line leaves an island that lies between two rows and is bent") {
+    for (int i = 0; i < 48; ++i) {
+        // A crescent, less high than rows are apart.
+        const Motion motion{.angle_rad = 0, .shift = {1, 0.02 * i}, .mirrored = i % 2 == 1};
+        const Contours crescent =
+            moved(Contours{Path{{-3, 0}, {{{3, 0}, 0.3}, {{-3, 0}, -0.25}}}}, motion);
+        const Fill fill = infill(crescent, request(InfillPattern::aligned, 1, 0));
+        CHECK(pieces(fill) > 0);
+        check_inside(crescent, fill);
     }
 }
 

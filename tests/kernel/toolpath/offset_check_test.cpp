@@ -193,3 +193,28 @@ TEST_CASE("boundary: distances and windings are those of the contours, point by 
         }
     }
 }
+
+TEST_CASE(
+    "boundary 1: an arc that ends at its circle's lowest point is met by a ray in that height") {
+    Random random(38);
+    for (int i = 0; i < 500; ++i) {
+        const Point2 centre(random.within(-50, 50), random.within(-50, 50));
+        const double radius = random.within(0.1, 20), sweep = pi * random.within(0.6, 0.99);
+        const Point2 lowest = centre - Vector2(0, radius);
+        const Point2 end = centre + Eigen::Rotation2Dd(-sweep) * Vector2(0, -radius);
+        Path path{lowest, {{lowest + Vector2(1, 0)}, {centre + Vector2(1, 2 * radius)}, {end}}};
+        path.segments.push_back(arc_with_sweep(end, lowest, sweep));
+        const Boundary boundary(Contours{path});
+        CHECK(boundary.winding({centre.x() - 2 * radius, lowest.y()}) == 0);
+    }
+}
+
+TEST_CASE(
+    "offset: a region without contours has none offset by any distance, and nothing is wrong") {
+    for (const double distance : {-1.0, 0.0, 2.0}) {
+        const OffsetResult result = offset({}, {distance, allowed_mm});
+        CHECK(result.contours.empty());
+        CHECK(!result.second_method);
+        CHECK(!result.unresolved);
+    }
+}

@@ -1,0 +1,46 @@
+// The walls of a layer: closed strands that follow its outline inwards, each beside the one before.
+//
+// Contract
+//  1. The outermost wall's outer flank is the outline: its middle is half a width within, so that dimensions are exact.
+//     Walls are spaced by width - overlap x height (1 - pi/4), at overlap 1 that of rounded rectangles without a gap
+//     between. Lines stay lines, arcs are about the same centres in all walls.
+//  2. With `thin_walls`, of the outermost, and `gap_fill`, of the others: where the region is so narrow that a wall's opposite sides would lie over each other by more than a quarter of
+//     their spacing, there is no wall; that part is in `thin` (no wall at all fits) or `gaps` (none beside the walls that
+//     do), as the region to be filled from flank to flank. Parts narrower than the least width are left out and their
+//     area counted.
+//  3. `inside` is what the walls leave for fill: within the inner flanks of the innermost.
+//  4. Of a count of 0 everything is inside.
+
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "kernel/toolpath/offset.h"
+#include "kernel/toolpath/strand.h"
+
+namespace lyr {
+
+struct WallRequest {
+    std::uint32_t count = 2;
+    double width_mm = 0.45, height_mm = 0.2;
+    double overlap = 1;         // see 1; in [0, 1]
+    double min_width_mm = 0.2;  // of what is worth filling
+    bool thin_walls = true, gap_fill = true;
+    Corner corner = Corner::round;
+    double allowed_mm = 0;
+};
+
+struct Walls {
+    std::vector<Strand> strands{};        // closed, the outermost first
+    std::vector<std::uint32_t> depths{};  // by strand; 0: outermost
+    std::vector<Contour> inside{};
+    std::vector<Contour> thin{}, gaps{};
+    double left_out_mm2 = 0;
+    std::size_t second_method = 0, unresolved = 0;  // of the offsets and region operations
+};
+
+// `outline` as those of a section or of united(): material on the left, winding around no point more than once.
+Walls walls(Region outline, const WallRequest& request);
+
+}  // namespace lyr

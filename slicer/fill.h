@@ -1,0 +1,29 @@
+// The second pass over a layer: everything within and beside its walls, with the role of each piece.
+
+#pragma once
+
+#include <span>
+#include <variant>
+
+#include "format/operation.h"
+#include "kernel/toolpath/hatch_runs.h"
+#include "slicer/outline.h"
+
+namespace lyr::slicer {
+
+// Printed in one go, from either end.
+struct Piece {
+    format::Role role;
+    std::variant<Strand, HatchRun> way;
+};
+
+struct LayerFill {
+    std::vector<Piece> pieces{};
+    std::size_t unresolved = 0;
+};
+
+// `outlines` are those of all layers.
+LayerFill fill_layer(std::size_t index, const LayerSpan& span, const Walls& walls,
+                     std::span<const SkinOutline> outlines, const Options& options);
+
+}  // namespace lyr::slicer
