@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "kernel/toolpath/bridges.h"
+#include "kernel/toolpath/centre_lines.h"
 #include "kernel/toolpath/infill.h"
 
 namespace lyr::slicer {
@@ -71,6 +72,25 @@ public:
         }
     }
 
+    // From flank to flank: of thin walls, these are the outline.
+    void narrow(Region region, format::Role role, double flank_mm) {
+        if (region.empty()) return;
+        CentreLines lines = centre_lines(region, {.min_width_mm = profile_.perimeters.min_width_mm,
+                                                  .max_width_mm = profile_.perimeters.max_width_mm,
+                                                  .allowed_mm = allowed_mm_});
+        fill.unresolved += lines.unresolved;
+        for (Strand& strand : lines.strands) {
+            strand.width_mm += 2 * flank_mm;
+            for (double& width : strand.widths_mm) width += 2 * flank_mm;
+            fill.pieces.push_back({role, std::move(strand)});
+        }
+    }
+
+    // By how much the flanks of walls reach over the boundary between them and what is beside them.
+    double flank_mm() const {
+        return profile_.perimeters.overlap * span_.height_mm() * (1 - std::numbers::pi / 4) / 2;
+    }
+
     void sparse(Region region) {
         if (profile_.infill.density == 0) return;
         append(region, format::Role::sparse_infill,
@@ -99,9 +119,7 @@ private:
         request.z_mm = span_.middle_mm();
         request.layer = index_;
         request.allowed_mm = allowed_mm_;
-        const double flank_mm =
-            profile_.perimeters.overlap * span_.height_mm() * (1 - std::numbers::pi / 4) / 2;
-        const double inset_mm = flank_mm + (0.5 - profile_.infill.overlap) * request.width_mm;
+        const double inset_mm = flank_mm() + (0.5 - profile_.infill.overlap) * request.width_mm;
         const OffsetResult middles =
             offset(region, {.distance_mm = -inset_mm, .allowed_mm = allowed_mm_});
         fill.unresolved += middles.unresolved.has_value();
@@ -133,6 +151,8 @@ LayerFill fill_layer(std::size_t index, const LayerSpan& span, const Walls& wall
                                  .min_sparse_mm2 = profile.skin.min_area_mm2,
                                  .allowed_mm = options.tolerance().unite_mm()});
     filler.fill.unresolved += skins.unresolved;
+    filler.narrow(walls.thin, format::Role::thin_wall, 0);
+    filler.narrow(walls.gaps, format::Role::gap_fill, filler.flank_mm());
     filler.solid(skins.bottom, format::Role::bottom_skin);
     filler.solid(skins.top, format::Role::top_skin);
     if (index > 0) filler.bridges(skins.bridge, outlines[index - 1].region());

@@ -38,8 +38,10 @@ constexpr std::array shorter_shares = {0.9, 0.75};
 // Points of a stretch are looked at in strides first: most arcs that are too long are so by far.
 constexpr std::size_t stride = 4;
 
-// A stretch of fewer points does not show where arcs swing between them.
-constexpr std::size_t few_points = 24;
+// Neighbours that are farther apart than this share of the stretch do not show what arcs do between them: there the cubic
+// through them is looked at, in so many places; a single span is all that arcs can be held to, in more.
+constexpr double wide_share = 1.0 / 16;
+constexpr int places_between = 3, places_in_single_span = 9;
 
 // The sagitta of the arc over `chord` that leaves along `tangent`.
 double sagitta_from_tangent(const Vector2& chord, const Vector2& tangent) {
@@ -47,9 +49,11 @@ double sagitta_from_tangent(const Vector2& chord, const Vector2& tangent) {
     return length / 2 * cross(tangent, chord) / (length + tangent.dot(chord));
 }
 
-// The middle of the cubic with two neighbours' points and tangents.
-Point2 middle_of(const CurvePoint& a, const CurvePoint& b) {
-    return 0.5 * (a.point + b.point) + (b.point - a.point).norm() / 8 * (a.tangent - b.tangent);
+// The cubic with two neighbours' points and tangents, at a share of the way.
+Point2 between(const CurvePoint& a, const CurvePoint& b, double share) {
+    const double length = (b.point - a.point).norm(), rest = 1 - share;
+    return rest * rest * (1 + 2 * share) * a.point + share * share * (1 + 2 * rest) * b.point +
+           share * rest * length * (rest * a.tangent - share * b.tangent);
 }
 
 // Whether points are within a distance of a whole line or circle: offset_mm(), but without its square root.
@@ -123,7 +127,7 @@ public:
             for (const std::uint32_t place : kept) add_arc(place, one_more);
             if (!kept.empty()) add_biarc(kept.front(), reached_[(arcs + 2) % 3]);
             if (one_more.empty() && reached_[(arcs + 2) % 3].empty()) {
-                add_chord(farthest_, one_more);
+                if (!add_other_way(one_more)) add_chord(farthest_, one_more);
                 if (places_.back().at == last_) return trace_back(out);
             }
         }
@@ -188,10 +192,9 @@ private:
             const Vector2 arriving = tangent_beyond(chord, leaving);
             const double error = cross(point(end).tangent, arriving);
             if (!(chord.dot(leaving) > 0) || !(leaving.dot(arriving) > least_cosine_of_turn) ||
-                !(std::abs(error) <= most_error))
+                !(std::abs(error) <= most_error) || !(point(end).tangent.dot(arriving) > 0))
                 return false;
             const Segment arc{point(end).point, sagitta_from_tangent(chord, leaving)};
-            if (end == start + 1 && !(std::abs(arc.sagitta_mm) <= bound_mm_)) return false;
             const Band band({point(start).point, leaving, curvature_per_mm(chord, leaving)},
                             bound_mm_);
             if (!within(start, end, [&](const Point2& p) { return band.has(p); })) return false;
@@ -223,9 +226,6 @@ private:
         const Point2 joint = 0.5 * (here.point + goal.point + d * (here.tangent - goal.tangent));
         const Segment first{joint, sagitta_from_tangent(joint - here.point, here.tangent)};
         const Segment second{goal.point, -sagitta_from_tangent(joint - goal.point, -goal.tangent)};
-        if (end == start + 1 &&
-            !(std::abs(first.sagitta_mm) <= bound_mm_ && std::abs(second.sagitta_mm) <= bound_mm_))
-            return std::nullopt;
         const Vector2 along_joint = tangent_beyond(joint - here.point, here.tangent);
         const Band before(
             {here.point, here.tangent, curvature_per_mm(joint - here.point, here.tangent)},
@@ -258,6 +258,23 @@ private:
         return found.has_value();
     }
 
+    // No arc goes on from the farthest place, with the tangent it is reached with: it is reached along the curve's own
+    // tangent instead, with two arcs from an earlier place.
+    bool add_other_way(std::vector<std::uint32_t>& reached) {
+        if (places_[farthest_].error == 0) return false;
+        const std::uint32_t end = places_[farthest_].at;
+        for (auto from = static_cast<std::uint32_t>(places_.size()); from-- > 0;) {
+            if (places_[from].at >= end) continue;
+            const auto found = biarc(from, end);
+            if (!found) continue;
+            reached.push_back(static_cast<std::uint32_t>(places_.size()));
+            places_.push_back(*found);
+            farthest_ = from;
+            return true;
+        }
+        return false;
+    }
+
     // No arc is within the bound: past this point with a chord, without regard to the tangent.
     void add_chord(std::uint32_t from, std::vector<std::uint32_t>& reached) {
         const std::uint32_t end = places_[from].at + 1;
@@ -265,14 +282,30 @@ private:
         places_.push_back({end, from, point(end).tangent, 0, {point(end).point, 0}, {}});
     }
 
+    // Whether all points are near, and none is before the start or past the end: not even where the curve goes out and
+    // comes back.
     template <class IsNear>
     bool within(std::uint32_t start, std::uint32_t end, IsNear is_near) const {
+        const Point2 origin = point(start).point;
+        const Vector2 chord = point(end).point - origin;
+        const double length = chord.norm(), most = length * (length + bound_mm_),
+                     least = -length * bound_mm_;
+        const auto is_beside = [&](const Point2& p) {
+            const double along = chord.dot(p - origin);
+            return least <= along && along <= most && is_near(p);
+        };
         for (std::size_t first = stride; first > 0; --first)
             for (std::size_t i = start + first; i < end; i += stride)
-                if (!is_near(points_[i].point)) return false;
-        if (end - start >= few_points || end == start + 1) return true;
-        for (std::uint32_t i = start; i < end; ++i)
-            if (!is_near(middle_of(point(i), point(i + 1)))) return false;
+                if (!is_beside(points_[i].point)) return false;
+        const double wide2 = wide_share * wide_share * chord.squaredNorm();
+        const int places = end == start + 1 ? places_in_single_span : places_between;
+        for (std::uint32_t i = start; i < end; ++i) {
+            if (!((point(i + 1).point - point(i).point).squaredNorm() > wide2)) continue;
+            for (int k = 1; k <= places; ++k)
+                if (!is_beside(
+                        between(point(i), point(i + 1), static_cast<double>(k) / (places + 1))))
+                    return false;
+        }
         return true;
     }
 

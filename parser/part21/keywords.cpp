@@ -18,10 +18,12 @@ std::uint64_t load(const char* p) {
     return word;
 }
 
-// Multiplication mixes upwards only, so the high half is folded down. The constant is 2^64 divided
-// by the golden ratio, odd, with no pattern in its bits.
+// Multiplication mixes upwards only, so the high half is folded down, twice: the slot depends on every bit, the last
+// letter's too. The constant is 2^64 divided by the golden ratio, odd, with no pattern in its bits.
 std::uint64_t mix(std::uint64_t hash, std::uint64_t word) {
-    hash = (hash ^ word) * 0x9E3779B97F4A7C15u;
+    constexpr std::uint64_t factor = 0x9E3779B97F4A7C15u;
+    hash = (hash ^ word) * factor;
+    hash = (hash ^ (hash >> 32)) * factor;
     return hash ^ (hash >> 32);
 }
 

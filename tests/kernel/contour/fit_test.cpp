@@ -163,3 +163,100 @@ TEST_CASE("fit 3: at most 1.4 times as many arcs as any arcs need, and one for t
         }
     }
 }
+
+namespace {
+
+// An arc of a radius that turns left by an angle, a line along x, and such an arc again; the line begins at the origin.
+PlaneCurve arc_line_arc(double radius, double line_mm, double turn_rad) {
+    return [=](double t) {
+        const auto on_arc = [&](double angle, double x) {
+            return CurvePoint{{x + radius * std::sin(angle), radius * (1 - std::cos(angle))},
+                              {std::cos(angle), std::sin(angle)}};
+        };
+        const double arc_mm = radius * turn_rad;
+        if (t < arc_mm) return on_arc((t - arc_mm) / radius, 0);
+        if (t < arc_mm + line_mm) return CurvePoint{{t - arc_mm, 0}, {1, 0}};
+        return on_arc((t - arc_mm - line_mm) / radius, line_mm);
+    };
+}
+
+}  // namespace
+
+TEST_CASE("fit 2: arcs do not leave out the tip of a curve that comes back the way it went") {
+    CHECK(fit(ellipse(50, 0.001), -2, 2, 0.0025).worst_mm <= 0.0025);
+    const PlaneCurve thin = hyperbola(19.2, 0.0187);
+    CHECK(fit(thin, -1, 1, 0.0016).worst_mm <= 0.0016);
+    std::vector<CurvePoint> points;
+    for (int i = 0; i <= 800; ++i) points.push_back(ellipse(50, 0.001)(-2 + 0.005 * i));
+    std::vector<Segment> arcs;
+    fit_arcs(points, 0.0025, arcs);
+    for (const CurvePoint& p : points) {
+        Point2 at = points.front().point;
+        double off = 1e9;
+        for (const Segment& arc : arcs) {
+            off = std::min(off, distance_mm(at, arc, p.point));
+            at = arc.end;
+        }
+        CHECK(off <= 0.0025);
+    }
+}
+
+TEST_CASE(
+    "fit 1, 2: long lines between arcs are kept to, and no search for few arcs ends in a kink") {
+    for (const double radius : {0.1, 1.0, 5.0}) {
+        for (const double line_mm : {1.0, 10.0, 30.0}) {
+            for (const double turn : {0.3, 0.7, 2.5}) {
+                for (const double allowed_mm : {0.0005, 0.0025}) {
+                    CAPTURE(radius);
+                    CAPTURE(line_mm);
+                    CAPTURE(turn);
+                    CAPTURE(allowed_mm);
+                    const PlaneCurve curve = arc_line_arc(radius, line_mm, turn);
+                    const Fitted fitted = fit(curve, 0, 2 * radius * turn + line_mm, allowed_mm);
+                    CHECK(fitted.worst_mm <= allowed_mm);
+                    CHECK(fitted.worst_turn < 1e-4);
+                }
+            }
+        }
+    }
+}
+
+TEST_CASE("fit 2: a curve that bends both ways about the middle of a span is kept to") {
+    const PlaneCurve cubic = [](double t) {
+        return CurvePoint{{t, t * t * t}, Vector2(1, 3 * t * t).normalized()};
+    };
+    CHECK(fit(cubic, -3, 3, 0.0001).worst_mm <= 0.0001);
+}
+
+TEST_CASE("fit: a curve that dwells, is rough, has a wrong tangent or none, ends soon") {
+    std::size_t calls = 0;
+    const auto counted = [&](const PlaneCurve& curve) {
+        return [&calls, curve](double t) {
+            ++calls;
+            return curve(t);
+        };
+    };
+    const PlaneCurve round = ellipse(5, 4);
+    const auto bad = [](double t) { return t > 1 && t < 1.1; };
+    for (const PlaneCurve& curve :
+         {PlaneCurve([&](double t) { return round(bad(t) ? 1 : t); }), PlaneCurve([&](double t) {
+              return CurvePoint{round(t).point, (bad(t) ? -1 : 1) * round(t).tangent};
+          }),
+          PlaneCurve([&](double t) {
+              return CurvePoint{round(t).point, (bad(t) ? 0 : 1) * round(t).tangent};
+          }),
+          PlaneCurve([&](double t) {
+              return bad(t) ? CurvePoint{{NAN, NAN}, {NAN, NAN}} : round(t);
+          }),
+          PlaneCurve([&](double t) {
+              return CurvePoint{
+                  round(t).point + 1e-5 * Vector2(std::sin(1e7 * t), std::cos(3e7 * t)),
+                  round(t).tangent};
+          })}) {
+        calls = 0;
+        std::vector<Segment> arcs;
+        fit_arcs(counted(curve), 0, 2, round(0).point, round(2).point, 1e-4, arcs);
+        CHECK(calls < 10'000'000);
+        CHECK(arcs.back().end == round(2).point);
+    }
+}
