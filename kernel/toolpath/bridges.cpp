@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "kernel/geometry/tolerance.h"
 #include "kernel/region/verify.h"
 #include "kernel/toolpath/boundary.h"
 #include "kernel/toolpath/islands.h"
@@ -51,12 +52,14 @@ std::vector<double> candidates(std::span<const BoundaryPiece> boundary, double s
     return angles;
 }
 
+// Nearly: of a full circle at least 0.7 of its diameter.
 double extent_mm(std::span<const BoundaryPiece> boundary, const Vector2& across) {
     double low = boundary.front().start.dot(across), high = low;
     for (const BoundaryPiece& piece : boundary) {
-        for (const Point2& point : {piece.start, piece.middle}) {
-            low = std::min(low, point.dot(across));
-            high = std::max(high, point.dot(across));
+        for (const double fraction : {0.0, 0.25, 0.5, 0.75}) {
+            const double at = piece.at(fraction).point.dot(across);
+            low = std::min(low, at);
+            high = std::max(high, at);
         }
     }
     return high - low;
@@ -74,11 +77,12 @@ bool is_held(const Boundary& below, const Point2& end, const Vector2& beyond) {
 
 Trial tried(std::span<const BoundaryPiece> boundary, const Boundary& below, double angle_rad,
             double spacing_mm) {
-    const Vector2 across(-std::sin(angle_rad), std::cos(angle_rad));
-    const Rows rows = rows_across(
-        boundary, {.angle_rad = angle_rad, .pitch_mm = extent_mm(boundary, across) / rows_tried});
-    const Vector2 beyond = spacing_mm / 2 * rows.direction;
     Trial trial{.angle_rad = angle_rad};
+    const double extent = extent_mm(boundary, {-std::sin(angle_rad), std::cos(angle_rad)});
+    if (extent <= resolution_mm) return trial;
+    const Rows rows =
+        rows_across(boundary, {.angle_rad = angle_rad, .pitch_mm = extent / rows_tried});
+    const Vector2 beyond = spacing_mm / 2 * rows.direction;
     double length = 0;
     for (std::uint32_t row = 0; row < rows.count(); ++row) {
         for (const RowSpan& span : rows.spans_of(row)) {

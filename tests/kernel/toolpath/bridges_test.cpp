@@ -109,6 +109,19 @@ TEST_CASE("bridge: a ring between a post and a wall is held at both ends of most
     CHECK(bridge_angle(ring, below, spacing_mm).has_value());
 }
 
+TEST_CASE("bridge: a full circle has an extent across the line to its farthest point") {
+    // Its boundary was seen at two points only, which lie on a row of the first direction.
+    const Contours below{rectangle(-20, -20, 20, 20), FullCircle{{1, 2}, 5, false}};
+    for (const double radius : {5.0, 5.4, 1e-3}) {
+        const Contours bridge{FullCircle{{1, 2}, radius, true}};
+        CHECK(bridge_angle(bridge, below, spacing_mm).has_value() == (radius > 4));
+    }
+    Path lens{{-4, 2}, {}};
+    lens.segments.push_back(arc_with_sweep({-4, 2}, {6, 2}, pi / 2));
+    lens.segments.push_back(arc_with_sweep({6, 2}, {-4, 2}, pi / 2));
+    CHECK(bridge_angle(Contours{lens}, below, 2.5).has_value());
+}
+
 TEST_CASE("bridge: roofs and table tops that skins find are hatched across the air") {
     const Contours top{rectangle(0, 0, 30, 20)};
     const Contours cavity{rectangle(0, 0, 30, 20), reversed(rectangle(8, 5, 22, 15))};
