@@ -92,7 +92,7 @@ struct Infill {
     InfillPattern pattern = InfillPattern::grid;
     double width_mm = 0.45;
     double angle_deg = 45;
-    double overlap = 0.2;  // with the innermost wall, of the line's width
+    double overlap = 0.25;  // with the innermost wall, of the line's width
     bool operator==(const Infill&) const = default;
 };
 

@@ -23,16 +23,6 @@ double length_of(const Strand& strand) {
     return length_mm(strand.path);
 }
 
-double length_of(const HatchRun& run) {
-    double length = 0;
-    for (const HatchRow& row : run.rows) length += row.end_mm - row.start_mm;
-    return length;
-}
-
-double length_of(const Piece& piece) {
-    return std::visit([](const auto& way) { return length_of(way); }, piece.way);
-}
-
 Strand reversed(Strand strand) {
     auto* path = std::get_if<Path>(&strand.path);
     if (!path) return strand;
@@ -144,8 +134,7 @@ private:
         const Walls& walls = layer_.outlined.walls;
         for (std::size_t i = 0; i < walls.strands.size(); ++i)
             add(wall_style(i), length_of(walls.strands[i]));
-        for (const Piece& piece : layer_.fill.pieces)
-            add(styles_.of(piece.role, width_of(piece), 0), length_of(piece));
+        for (const Piece& piece : layer_.fill.pieces) add(piece_style(piece), length_mm(piece));
         return time_s;
     }
 
@@ -175,7 +164,11 @@ private:
         const Walls& walls = layer_.outlined.walls;
         const Strand& strand = walls.strands[wall];
         return styles_.of(walls.depths[wall] == 0 ? Role::outer_wall : Role::inner_wall,
-                          strand.width_mm, length_of(strand));
+                          strand.width_mm, length_of(strand), 1);
+    }
+
+    format::PathStyle piece_style(const Piece& piece) const {
+        return styles_.of(piece.role, width_of(piece), 0, piece.flow);
     }
 
     bool retracts() const { return profile_.travel.retract_length_mm > 0; }
@@ -221,7 +214,7 @@ private:
         const bool bridges = piece.role == Role::bridge;
         travel(move.travel, move.seam.point);
         if (bridges) encoder_.fan(0, profile_.bridge.fan);
-        begin(styles_.of(piece.role, width_of(piece), length_of(piece)));
+        begin(piece_style(piece));
         if (const auto* run = std::get_if<HatchRun>(&piece.way)) {
             append(move.reversed ? lyr::reversed(*run) : *run);
         } else {

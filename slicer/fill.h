@@ -15,7 +15,11 @@ namespace lyr::slicer {
 struct Piece {
     format::Role role;
     std::variant<Strand, HatchRun> way;
+    double flow = 1;
 };
+
+// Links between rows too.
+double length_mm(const Piece& piece);
 
 struct LayerFill {
     std::vector<Piece> pieces{};

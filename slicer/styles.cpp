@@ -69,12 +69,12 @@ double Styles::acceleration_mm_s2(Role role) const {
     }
 }
 
-format::PathStyle Styles::of(Role role, double width_mm, double length_mm) const {
+format::PathStyle Styles::of(Role role, double width_mm, double length_mm, double flow) const {
     format::PathStyle style{
         .role = role,
         .width_mm = width_mm,
         .height_mm = height_mm_,
-        .flow = profile_.filament.flow * (role == Role::bridge ? profile_.bridge.flow : 1),
+        .flow = flow * profile_.filament.flow * (role == Role::bridge ? profile_.bridge.flow : 1),
         .acceleration_mm_s2 = acceleration_mm_s2(role)};
     double speed = speed_mm_s(role, is_wall(role) ? length_mm : 0);
     if (layer_ == 0) speed = std::min(speed, profile_.speed.first_layer_mm_s);

@@ -12,8 +12,8 @@ public:
     Styles(const profile::Profile& profile, std::size_t layer, double height_mm)
         : profile_(profile), layer_(layer), height_mm_(height_mm) {}
 
-    // Of a strand of so much length; `width_mm` as the strand has it.
-    format::PathStyle of(format::Role role, double width_mm, double length_mm) const;
+    // Of a strand of so much length; `width_mm` and `flow` as it has them.
+    format::PathStyle of(format::Role role, double width_mm, double length_mm, double flow) const;
 
     // All speeds are multiplied by this, down to the profile's least.
     void slow_down(double factor) { factor_ = factor; }
