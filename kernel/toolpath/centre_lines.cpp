@@ -1,4 +1,5 @@
-// The medial axis, less its branches into corners, is where strands run; what remains is to find where they begin and end.
+// The medial axis, less its branches into corners, is where strands run; what remains is to find where they begin and
+// end.
 
 #include "kernel/toolpath/centre_lines.h"
 

@@ -1,6 +1,7 @@
-// A disc rolls along each site of the boundary and touches others. Where the other changes between two touches, the disc
-// in between that touches both is found by a root of the difference of the two radii; if it turns out to touch a third,
-// there are two such places. Every touch is one of both sites, so that what is narrow for one is not missed by the other.
+// A disc rolls along each site of the boundary and touches others. Where the other changes between two touches, the
+// disc in between that touches both is found by a root of the difference of the two radii; if it turns out to touch a
+// third, there are two such places. Every touch is one of both sites, so that what is narrow for one is not missed by
+// the other.
 
 #include "kernel/toolpath/medial_axis.h"
 
@@ -227,20 +228,40 @@ private:
                                 std::abs(forwards(first.other, first.other_at, last.other_at));
         const int steps = is_straight ? 1 : least_points + static_cast<int>(turn / point_turn_rad);
         MedialEdge edge;
-        Touch before = first;
+        Disc before = disc(site, first);
         double area = 0;
         for (int i = 0; i <= steps; ++i) {
             const double at = first.at + (last.at - first.at) * i / steps;
-            const Touch here = i == 0       ? first
-                               : i == steps ? last
-                                            : discs_.touch_with(site, at, first.other);
-            if (i > 0) area += area_between(site, before, here);
+            const Disc here = i == 0       ? before
+                              : i == steps ? disc(site, last)
+                                           : disc_at(site, at, first.other);
+            area += side_area(site, before.mine.point, here.mine.point, before.centre, here.centre);
+            area += side_area(first.other, here.its.point, before.its.point, here.centre,
+                              before.centre);
             if (edge.points.empty() || here.centre != edge.points.back().centre)
-                edge.points.push_back({here.centre, tangent(site, here), here.radius_mm, area});
+                edge.points.push_back({here.centre, tangent(here), here.radius_mm, area});
             before = here;
         }
         area_mm2_ += area;
         if (length_of(edge) > same_mm) axis_.edges.push_back(std::move(edge));
+    }
+
+    struct Disc {
+        SiteFoot mine, its;
+        Point2 centre;
+        double radius_mm;
+    };
+
+    Disc disc(SiteId site, const Touch& touch) const {
+        return {discs_.foot(site, touch.at), discs_.foot(touch.other, touch.other_at), touch.centre,
+                touch.radius_mm};
+    }
+
+    Disc disc_at(SiteId site, double at, SiteId other) const {
+        const SiteFoot mine = discs_.foot(site, at);
+        const double radius = std::max(0.0, discs_.radius_mm(mine, other));
+        const Point2 centre = mine.point + radius * mine.normal;
+        return {mine, discs_.foot_of(other, centre), centre, radius};
     }
 
     // From one place of a site to another that is not far; a full circle goes on where it starts.
@@ -257,26 +278,18 @@ private:
     }
 
     // The edge leaves to the left of the way from one foot to the other, as seen along the first.
-    Vector2 tangent(SiteId site, const Touch& touch) const {
-        const Vector2 mine = discs_.normal(site, touch.at);
-        const Vector2 its = discs_.normal(touch.other, touch.other_at);
-        const Vector2 across = mine - its;
+    static Vector2 tangent(const Disc& disc) {
+        const Vector2 across = disc.mine.normal - disc.its.normal;
         return Vector2(across.y(), -across.x()).normalized();
     }
 
-    double area_between(SiteId site, const Touch& a, const Touch& b) const {
-        return side_area(site, a.at, b.at, a.centre, b.centre) +
-               side_area(a.other, b.other_at, a.other_at, b.centre, a.centre);
-    }
-
-    // Between a stretch of a site and the chord of the centres; the centres lie to the left.
-    double side_area(SiteId site, double from, double to, const Point2& first,
+    // Between a short stretch of a site and the chord of the centres; the centres lie to the left.
+    double side_area(SiteId site, const Point2& from, const Point2& to, const Point2& first,
                      const Point2& last) const {
-        const Point2 a = discs_.point(site, from), b = discs_.point(site, to);
-        const double quadrangle = cross(last - a, first - b) / 2;
-        const double turn = discs_.turn_rad(site) * forwards(site, from, to);
+        const double quadrangle = cross(last - from, first - to) / 2;
         const double k = discs_.curvature_per_mm(site);
         if (k == 0) return quadrangle;
+        const double turn = 2 * std::asin(std::min(1.0, std::abs(k) * (to - from).norm() / 2));
         return quadrangle + (k > 0 ? 1 : -1) * (turn - std::sin(turn)) / (2 * k * k);
     }
 
