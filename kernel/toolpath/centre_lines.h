@@ -12,8 +12,9 @@
 //     the third one's ends beside it. Corners are filled as far as the strand's own discs reach.
 //  4. What is narrower than `min_width_mm` is left out, and what is too short for a strand; `left_out_mm2` has its
 //     area. Where the region is wider than `max_width_mm`, the strand is that wide, and `beside_mm2` is what it
-//     leaves.
-//  5. A part that is no longer than wide gets a short strand, half as wide as the part, if that is wide enough.
+//     leaves; `corners_mm2` is what strands with round ends do not reach besides.
+//  5. A part that is no longer than wide gets a short strand, half as wide as the part but no less than the least
+//     width, if that is not too short.
 //  6. `unresolved` counts regions that nothing could be made of in full: numbers that are not finite or out of range,
 //     or contours that wind around a point more than once.
 
@@ -37,7 +38,7 @@ struct CentreLineRequest {
 
 struct CentreLines {
     std::vector<Strand> strands{};
-    double left_out_mm2 = 0, beside_mm2 = 0;
+    double left_out_mm2 = 0, beside_mm2 = 0, corners_mm2 = 0;
     std::size_t unresolved = 0;
 };
 
