@@ -27,6 +27,10 @@ constexpr int least_points = 12;
 // Touches are refined in that many rounds at most: a halving each, where no root is found.
 constexpr int most_rounds = 60;
 
+// Touches of a region are about ten for each site; where contours cross each other, so that discs are nowhere right,
+// there would be no end of them.
+constexpr std::size_t most_touches = 100;
+
 // Of the region's area, and not less than that of as many square millimetres: what areas may differ by.
 constexpr double area_share = 2e-3, least_area_mm2 = 1e-4;
 
@@ -54,9 +58,10 @@ public:
         for (int round = 0; round < most_rounds && again; ++round) {
             again = false;
             for (SiteId site = 0; site < discs_.site_count(); ++site)
-                if (changed_[site]) again = refine(site) || again;
+                if (changed_[site] && !is_full()) again = refine(site) || again;
+            if (is_full()) break;
         }
-        axis_.complete = !again;
+        axis_.complete = !again && !is_full();
         for (SiteId site = 0; site < discs_.site_count(); ++site) add_edges(site);
         add_discs();
         return std::move(axis_);
@@ -65,7 +70,10 @@ public:
     double area_mm2() const { return area_mm2_; }
 
 private:
+    bool is_full() const { return count_ > most_touches * discs_.site_count(); }
+
     void insert(SiteId site, const Touch& touch) {
+        ++count_;
         touches_[site].push_back(touch);
         changed_[site] = true;
         if (touch.other == site || touch.radius_mm == 0) return;
@@ -102,6 +110,20 @@ private:
         if (to < from) std::rotate(at(to), at(from), at(from + 1));
     }
 
+    // Touches of one disc, [first, last): the other of the touch before comes first, that of the one after last.
+    static void arrange(std::vector<Touch>& touches, std::size_t first, std::size_t last) {
+        if (first > 0) {
+            const SiteId before = touches[first - 1].other;
+            std::size_t i = first;
+            while (i + 1 < last && touches[i].other != before) ++i;
+            if (touches[i].other == before) move(touches, i, first);
+        }
+        if (last == touches.size()) return;
+        const SiteId after = touches[last].other;
+        for (std::size_t i = last; i-- > first + 1;)
+            if (touches[i].other == after) return move(touches, i, last - 1);
+    }
+
     // Touches of one disc so that their others follow each other as they do before and after.
     void sort(SiteId site) {
         std::vector<Touch>& touches = touches_[site];
@@ -111,18 +133,7 @@ private:
         for (std::size_t first = 0; first < touches.size();) {
             std::size_t last = first + 1;
             while (last < touches.size() && are_one(site, touches[first], touches[last])) ++last;
-            if (first > 0) {
-                const SiteId before = touches[first - 1].other;
-                std::size_t i = first;
-                while (i + 1 < last && touches[i].other != before) ++i;
-                if (touches[i].other == before) move(touches, i, first);
-            }
-            if (last < touches.size()) {
-                std::size_t i = last - 1;
-                while (i > first + 1 && touches[i].other != touches[last].other) --i;
-                if (i > first && touches[i].other == touches[last].other)
-                    move(touches, i, last - 1);
-            }
+            arrange(touches, first, last);
             first = last;
         }
     }
@@ -314,6 +325,7 @@ private:
     double usual_mm_;
     std::vector<std::vector<Touch>> touches_;  // by site
     std::vector<bool> changed_;
+    std::size_t count_ = 0;  // of touches
     MedialAxis axis_;
     double area_mm2_ = 0;
 };

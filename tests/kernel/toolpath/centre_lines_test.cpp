@@ -352,6 +352,22 @@ TEST_CASE("centre lines 6: nothing comes of nothing, and what is invalid is coun
     CHECK(lines_in({Path{{1, 1}, {{{1, 1}}}}}).strands.empty());
 }
 
+TEST_CASE("centre lines 6: contours that cross themselves come to an end and are counted") {
+    std::size_t unresolved = 0;
+    for (unsigned seed = 500; seed < 520; ++seed) {
+        Random random(seed);
+        Path path{{random.within(0, 2), random.within(0, 2)}, {}};
+        for (int i = 0; i < 7; ++i)
+            path.segments.push_back({{random.within(0, 2), random.within(0, 2)},
+                                     random.coin() ? 0 : random.within(-1, 1)});
+        path.segments.push_back({path.start});
+        const CentreLines made = lines_in({path});
+        unresolved += made.unresolved;
+        for (const Strand& strand : made.strands) CHECK(std::isfinite(strand.width_mm));
+    }
+    CHECK(unresolved > 10);
+}
+
 TEST_CASE("centre lines: regions in one call come out as each by itself") {
     const Contours one{rectangle(0, 0, 10, 0.5)}, other{slot(0, 3, 9, 3.7)};
     const CentreLines both = lines_in({one[0], other[0]});
