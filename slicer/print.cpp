@@ -82,7 +82,7 @@ Status check_plate(const Eigen::AlignedBox3d& box, const profile::Plate& plate) 
 }
 
 Model on_bed(Model model, const Options& options, Eigen::AlignedBox3d& box) {
-    box = bounding_box(model, options.tolerance());
+    box = bounding_box(model, options.tolerance(), thread_count(options));
     const Vector3 move(options.profile.plate.at_mm[0] - box.min().x(),
                        options.profile.plate.at_mm[1] - box.min().y(), -box.min().z());
     box.translate(move);
