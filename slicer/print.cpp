@@ -28,6 +28,7 @@ void count(const OutlinedLayer& layer, Summary& summary) {
     summary.lines += layer.printed.lines;
     summary.arcs += layer.printed.arcs;
     summary.united_layers += layer.united ? 1 : 0;
+    summary.uncrossed_layers += layer.uncrossed ? 1 : 0;
     summary.slivers += layer.slivers;
 }
 
