@@ -35,6 +35,7 @@ perimeter_generator = classic
 gap_fill_enabled = 1
 extra_perimeters = 0
 overhangs = 0
+thick_bridges = 0
 fill_density = 15%
 fill_pattern = grid
 fill_angle = 45
