@@ -5,7 +5,6 @@
 #include <numbers>
 #include <vector>
 
-#include "bench/occt.h"
 #include "bench/scratch_file.h"
 #include "format/reader.h"
 #include "kernel/contour/arc.h"
@@ -65,10 +64,11 @@ private:
                 quantum_mm_ +
             origin_.head<2>();
         const Point2 opposite = 2 * centre - from;
-        const double half_turn = circle.counter_clockwise ? std::numbers::pi : -std::numbers::pi;
+        const double half_turn_rad =
+            circle.counter_clockwise ? std::numbers::pi : -std::numbers::pi;
         for (const auto& [start, end] : {std::pair(from, opposite), std::pair(opposite, from)})
             pieces_.push_back(
-                {start, arc_with_sweep(start, end, half_turn), z_mm_, style_.width_mm});
+                {start, arc_with_sweep(start, end, half_turn_rad), z_mm_, style_.width_mm});
     }
 
     double quantum_mm_, layer_height_mm_;
@@ -111,6 +111,8 @@ std::vector<Point3> points_along(const std::vector<WallPiece>& walls, std::size_
     return points;
 }
 
+}  // namespace
+
 Result<std::vector<Point3>> printed_points(const std::string& step_path, double layer_height_mm,
                                            std::size_t count) {
     slicer::Options options;
@@ -132,7 +134,19 @@ Result<std::vector<Point3>> printed_points(const std::string& step_path, double 
     return points_along(*walls, count);
 }
 
-}  // namespace
+std::vector<double> distances_mm(const occt::Surfaces& surfaces,
+                                 const std::vector<Point3>& points) {
+    std::vector<double> distances_mm;
+    for (const Point3& p : points) {
+        distances_mm.push_back(surfaces.distance_mm(p.x(), p.y(), p.z(), Tolerance{}.total_mm / 2));
+    }
+    std::sort(distances_mm.begin(), distances_mm.end());
+    return distances_mm;
+}
+
+double quantile(const std::vector<double>& sorted, double share) {
+    return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
+}
 
 Status measure_accuracy(const std::string& step_path, double layer_height_mm, std::size_t count,
                         Requirements& requirements) {
@@ -144,23 +158,17 @@ Status measure_accuracy(const std::string& step_path, double layer_height_mm, st
             Severity::error, ExitStatus::input, "OCCT reads no shape", {.file = step_path}};
     }
     const double allowed_mm = Tolerance{}.total_mm;
-    std::vector<double> distances_mm;
-    for (const Point3& p : *points)
-        distances_mm.push_back(surfaces->distance_mm(p.x(), p.y(), p.z(), allowed_mm / 2));
-    std::sort(distances_mm.begin(), distances_mm.end());
-    const auto share = [&](double s) {
-        return number(distances_mm[static_cast<std::size_t>(
-            s * static_cast<double>(distances_mm.size() - 1))]);
-    };
+    const std::vector<double> distances = distances_mm(*surfaces, *points);
+    const auto share = [&](double s) { return number(quantile(distances, s)); };
     const auto over =
-        distances_mm.end() - std::upper_bound(distances_mm.begin(), distances_mm.end(), allowed_mm);
+        distances.end() - std::upper_bound(distances.begin(), distances.end(), allowed_mm);
     const std::string name = std::filesystem::path(step_path).filename().string();
     print({"Distance of printed walls from the model's surfaces, mm",
            {"part", "layer height", "points", "median", "99 %", "greatest", "over the tolerance"},
            {{name, number(layer_height_mm), std::to_string(points->size()), share(0.5), share(0.99),
              share(1), std::to_string(over)}}});
     requirements.push_back({.what = name + ": greatest distance from the exact surface",
-                            .measured = distances_mm.back(),
+                            .measured = distances.back(),
                             .wanted = allowed_mm,
                             .at_most = true,
                             .unit = " mm"});

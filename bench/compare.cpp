@@ -1,4 +1,4 @@
-// bench_compare: figures of ours beside OCCT's, from the same run, as tables.
+// bench_compare: figures of ours beside OCCT's and PrusaSlicer's, from the same run, as tables.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -9,6 +9,7 @@
 
 #include "bench/accuracy.h"
 #include "bench/index.h"
+#include "bench/job.h"
 #include "bench/measure.h"
 #include "bench/occt.h"
 #include "bench/reading.h"
@@ -25,7 +26,7 @@ using namespace lyr::bench;
 const std::string parts = LYR_FIXTURES "/parts/";
 
 struct Arguments {
-    std::vector<std::string> only{"sections", "reading", "index", "scaling", "accuracy"};
+    std::vector<std::string> only{"sections", "reading", "index", "scaling", "accuracy", "job"};
     std::string files = parts;
     std::string part;
     double layer_height_mm = 0.2;
@@ -65,6 +66,14 @@ Status measure_accuracies(const Arguments& arguments, Requirements& requirements
     return Done{};
 }
 
+Status compare_jobs(const Arguments& arguments, Requirements& requirements) {
+    for (const PartToCut& part : parts_to_cut(arguments)) {
+        const Status done = compare_job(part.path, part.layer_height_mm, requirements);
+        if (!done) return done;
+    }
+    return Done{};
+}
+
 Status run(const Arguments& arguments, Requirements& requirements) {
     for (const std::string& table : arguments.only) {
         Status done = Done{};
@@ -72,6 +81,7 @@ Status run(const Arguments& arguments, Requirements& requirements) {
         if (table == "reading") compare_reading(step_files(arguments.files), requirements);
         if (table == "index") done = measure_index(requirements);
         if (table == "accuracy") done = measure_accuracies(arguments, requirements);
+        if (table == "job") done = compare_jobs(arguments, requirements);
         if (table == "scaling") done = compare_scaling(requirements);
         if (!done) return done;
     }
@@ -83,11 +93,12 @@ Status run(const Arguments& arguments, Requirements& requirements) {
 int main(int argc, char** argv) {
     Arguments arguments;
     CLI::App app(
-        "Compares speeds with OCCT's. Exit status: 0 all requirements met, 1 not all, else as "
+        "Compares with OCCT and PrusaSlicer. Exit status: 0 all requirements met, 1 not all, else "
+        "as "
         "stepc.");
     app.add_option("--only", arguments.only,
-                   "Which tables: sections, reading, index, scaling, accuracy")
-        ->check(CLI::IsMember({"sections", "reading", "index", "scaling", "accuracy"}))
+                   "Which tables: sections, reading, index, scaling, accuracy, job")
+        ->check(CLI::IsMember({"sections", "reading", "index", "scaling", "accuracy", "job"}))
         ->delimiter(',');
     app.add_option("--files", arguments.files, "Folder of STEP files to read, or one file")
         ->check(CLI::ExistingPath);
