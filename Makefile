@@ -3,8 +3,8 @@
 # make test       builds and runs every test
 # make sanitize   the same tests under the address and undefined-behaviour sanitizers, into build-sanitize/
 # make board      only what a printer's board needs (lyrrun, lyrview), into build-board/
-# make bench      speed beside OpenCASCADE's, into build-bench/ (needs: tools/setup --bench); LYR_BENCH_FILES=folder
-#                 of STEP files to read
+# make bench      speed beside OpenCASCADE's and PrusaSlicer's, into build-bench/ (needs: tools/setup --bench);
+#                 LYR_BENCH_FILES=folder of STEP files to read
 # make install    into PREFIX (default /usr/local)
 # make clean      removes what the others made
 

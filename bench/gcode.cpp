@@ -9,7 +9,7 @@
 namespace lyr::bench {
 namespace {
 
-// Coordinates have three digits: each end is off by up to 0.7 of half a micrometre.
+// Coordinates have three digits: an end lies up to 0.0007 mm off.
 constexpr double rounding_mm = 0.001;
 
 double number_in(std::string_view text) {

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int runs = 5;
 constexpr double filament_diameter_mm = 1.75;
-// Each takes OCCT a search over whole surfaces where it lies far off.
+// Enough for the 99 %; where one lies far off, it takes OCCT a search over whole surfaces.
 constexpr std::size_t points = 20'000;
 
 constexpr double least_speedup = 10;
