@@ -16,10 +16,12 @@
 //     are an error (status geometry), unless `allow_open`.
 //  7. Solids that overlap or touch are printed as one: a layer's walls and fill are those of the union of their sections.
 //     Reports keep solids apart.
+//  8. The file has each layer's time as estimate.h has it, for the printer of the options.
 
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +30,8 @@
 #include "kernel/geometry/tolerance.h"
 #include "kernel/section/cutter.h"
 #include "profile/profile.h"
+#include "slicer/estimate.h"
+#include "target/config/printer.h"
 
 namespace lyr::slicer {
 
@@ -35,11 +39,14 @@ struct Options {
     lyr::profile::Profile profile;
     std::string profile_name;   // for the file's metadata, as the configuration
     std::string configuration;  // all settings as text, verbatim
+    // Whose limits the estimates keep; none: a generic one.
+    std::optional<config::Printer> printer{};
     Vector3 up = Vector3::UnitZ();
     bool allow_open = false;
     bool strict = false;   // refuse a model with geometric defects instead of healing it
     unsigned threads = 0;  // 0: as many as there are processors
 
+    config::Printer machine() const { return printer.value_or(config::generic_printer()); }
     Tolerance tolerance() const { return {profile.slicing.tolerance_mm}; }
 };
 
@@ -52,8 +59,13 @@ struct Summary {
     std::size_t united_layers = 0;  // where solids overlapped or touched
     std::size_t slivers = 0;  // contours left out there: gaps and leftovers within the tolerance
     std::uint64_t bytes = 0;
-    Eigen::AlignedBox3d box{};  // of the model, as it is printed
+    Eigen::AlignedBox3d box{};           // of the model, as it is printed
+    Estimate estimate{};                 // of a print
+    double filament_mm = 0, mass_g = 0;  // as the file has them
 };
+
+// For people: time and filament, then a line for each role that is printed.
+std::string estimate_text(const Summary& summary, const std::string& printer_name);
 
 struct SectionFigures {
     double z_mm = 0, area_mm2 = 0, length_mm = 0;
