@@ -5,10 +5,9 @@
 
 #include "apps/command_line.h"
 #include "apps/files.h"
+#include "apps/printer_file.h"
 #include "apps/progress_line.h"
 #include "apps/signal_watch.h"
-#include "base/read_text.h"
-#include "target/config/printer.h"
 #include "target/run/print.h"
 #include "target/run/simulate.h"
 
@@ -38,9 +37,6 @@ constexpr Program program{
     "Exit status: 0 done, 2 options, 3 input, 4 not supported yet, 6 output, 7 the machine cannot\n"
     "or did not do it, 8 stopped on request.\n"};
 
-// What the reader of printer files takes, too.
-constexpr std::size_t largest_printer_bytes = std::size_t{1} << 20;
-
 void add_options(CLI::App& app, Arguments& arguments) {
     add_file(app, "print", arguments.lyr_path,
              "The .lyr file that stepc wrote; it is read more than once, so that it cannot be -, "
@@ -67,14 +63,6 @@ run::ProgressSink shown_on(ProgressLine& line) {
                       progress.layers, time_s / 3600, time_s / 60 % 60, time_s % 60);
         line.show(text);
     };
-}
-
-Result<config::Printer> read_printer(const std::string& path) {
-    if (path.empty()) return config::generic_printer();
-    if (path != "-") return config::read_printer(path);
-    const auto text = read_text(path, largest_printer_bytes);
-    if (!text) return text.error();
-    return config::parse_printer(*text, standard_input_name);
 }
 
 Status simulate(const Arguments& arguments, const config::Printer& printer) {
