@@ -65,9 +65,10 @@ private:
                 quantum_mm_ +
             origin_.head<2>();
         const Point2 opposite = 2 * centre - from;
+        const double half_turn = circle.counter_clockwise ? std::numbers::pi : -std::numbers::pi;
         for (const auto& [start, end] : {std::pair(from, opposite), std::pair(opposite, from)})
             pieces_.push_back(
-                {start, arc_with_sweep(start, end, std::numbers::pi), z_mm_, style_.width_mm});
+                {start, arc_with_sweep(start, end, half_turn), z_mm_, style_.width_mm});
     }
 
     double quantum_mm_, layer_height_mm_;

@@ -59,6 +59,13 @@ public:
           encoder_(quantum, state()) {}
 
     Result<format::EncodedLayer> encode() {
+        for (const Piece& piece : layer_.fill.around) {
+            const Strand& strand = std::get<Strand>(piece.way);
+            travel({.crosses = true}, start_of(strand.path));
+            begin(piece_style(piece));
+            append(strand);
+            head_ = start_of(strand.path);
+        }
         for (const PrintMove& move : moves_) {
             if (move.is_wall) {
                 append_wall(move);
@@ -95,15 +102,20 @@ private:
                             .detours = detours_ ? &*detours_ : nullptr});
     }
 
+    Point2 first_point() const {
+        if (!layer_.fill.around.empty())
+            return start_of(std::get<Strand>(layer_.fill.around.front().way).path);
+        return moves_.empty() ? Point2::Zero() : moves_.front().seam.point;
+    }
+
     format::LayerState state() {
         slow_down_for_cooling();
         format::LayerState state;
         state.z_mm = layer_.span.top_mm;
         state.height_mm = layer_.span.height_mm();
-        if (!moves_.empty()) {
-            state.start_x_mm = moves_.front().seam.point.x();
-            state.start_y_mm = moves_.front().seam.point.y();
-        }
+        const Point2 start = first_point();
+        state.start_x_mm = start.x();
+        state.start_y_mm = start.y();
         const profile::Travel& travel = profile_.travel;
         state.travel_speed_mm_s = profile_.speed.travel_mm_s;
         state.travel_acceleration_mm_s2 = profile_.acceleration.travel_mm_s2;

@@ -48,6 +48,39 @@ Status check_size(const Eigen::AlignedBox3d& box, const profile::Layer& layer) {
     return Done{};
 }
 
+// What the profile asks for and no print has yet; nothing of it is left out in silence.
+void warn_of_missing(const profile::Profile& profile, Diagnostics& diagnostics) {
+    const auto warn = [&](bool asked, const char* what) {
+        if (asked)
+            diagnostics.push_back({Severity::warning,
+                                   ExitStatus::unsupported,
+                                   std::string(what) + ": not made yet, the print goes without",
+                                   {}});
+    };
+    warn(profile.support.kind != profile::SupportKind::none, "support.kind");
+    warn(profile.adhesion.kind == profile::AdhesionKind::raft, "adhesion.kind = raft");
+    warn(profile.layer.adaptive, "layer.adaptive");
+    warn(profile.travel.wipe_mm > 0, "travel.wipe");
+    warn(profile.plate.copies > 1, "plate.copies");
+    warn(profile.plate.sequential, "plate.sequential");
+}
+
+// Where a plate's size is stated, the part has to lie on it.
+Status check_plate(const Eigen::AlignedBox3d& box, const profile::Plate& plate) {
+    const auto& [width_mm, depth_mm] = plate.size_mm;
+    if (width_mm == 0 && depth_mm == 0) return Done{};
+    if (box.min().x() >= 0 && box.min().y() >= 0 && box.max().x() <= width_mm &&
+        box.max().y() <= depth_mm)
+        return Done{};
+    char text[160];
+    std::snprintf(
+        text, sizeof text,
+        "the part, from %.6g, %.6g to %.6g, %.6g mm, does not lie on the plate of %.6g x %.6g mm "
+        "(plate.at, plate.size)",
+        box.min().x(), box.min().y(), box.max().x(), box.max().y(), width_mm, depth_mm);
+    return Diagnostic{Severity::error, ExitStatus::geometry, text, {}};
+}
+
 Model on_bed(Model model, const Options& options, Eigen::AlignedBox3d& box) {
     box = bounding_box(model, options.tolerance());
     const Vector3 move(options.profile.plate.at_mm[0] - box.min().x(),
@@ -212,6 +245,9 @@ Result<Summary> print(Model model, const std::string& source_name, const std::st
     const Model placed = on_bed(std::move(model), options, summary.box);
     if (Status checked = check_size(summary.box, options.profile.layer); !checked)
         return checked.error();
+    if (Status checked = check_plate(summary.box, options.profile.plate); !checked)
+        return checked.error();
+    warn_of_missing(options.profile, diagnostics);
     const auto spans = layer_spans(summary.box.sizes().z(), options.profile.layer);
     auto writer = format::Writer::create(lyr_path, quantum_for(options.tolerance()),
                                          metadata(source_name, options));

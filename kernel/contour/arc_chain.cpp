@@ -27,7 +27,7 @@ constexpr double least_cosine_of_turn = 0.2;
 constexpr double most_error = 0.15;
 
 // How many are kept of the places that n arcs reach. More of them, or more of the shorter arcs below, save an arc in a hundred.
-constexpr std::size_t kept_places = 7;
+constexpr std::size_t kept_places = 5;
 
 // What is kept is this share as far from the place that one arc less reaches as the farthest.
 constexpr double least_share = 0.6;
@@ -114,6 +114,9 @@ public:
         : points_(points),
           bound_mm_(bound_mm),
           last_(static_cast<std::uint32_t>(points.size() - 1)) {
+        for (std::uint32_t i = 0; i < last_; ++i)
+            widest_mm2_ =
+                std::max(widest_mm2_, (point(i + 1).point - point(i).point).squaredNorm());
         places_.push_back({0, 0, points.front().tangent, 0, {points.front().point}, {}});
         reached_[0].push_back(0);
     }
@@ -176,7 +179,7 @@ private:
             (try_end(end) ? good : bad) = end;
             const std::uint32_t doubled = std::min(last_, from + 2 * (good - from));
             // Finer gains nothing.
-            if (bad - good <= (good - from) / 32) break;
+            if (bad - good <= (good - from) / 16) break;
             end = doubled > good && doubled < bad ? doubled : good + (bad - good) / 2;
             if (end <= good) break;
         }
@@ -298,6 +301,7 @@ private:
             for (std::size_t i = start + first; i < end; i += stride)
                 if (!is_beside(points_[i].point)) return false;
         const double wide2 = wide_share * wide_share * chord.squaredNorm();
+        if (widest_mm2_ <= wide2) return true;
         const int places = end == start + 1 ? places_in_single_span : places_between;
         for (std::uint32_t i = start; i < end; ++i) {
             if (!((point(i + 1).point - point(i).point).squaredNorm() > wide2)) continue;
@@ -322,6 +326,7 @@ private:
     std::span<const CurvePoint> points_;
     double bound_mm_;
     std::uint32_t last_;
+    double widest_mm2_ = 0;          // between neighbours
     std::uint32_t farthest_ = 0;     // of all kept places
     std::uint32_t last_length_ = 8;  // of an arc, in points: where to look first
     std::vector<Place> places_;

@@ -1,4 +1,5 @@
-// The medial axis, less its branches into corners, is where strands run; what remains is to find where they begin and end.
+// The medial axis, less its branches into corners, is where strands run; what remains is to find where they begin and
+// end.
 
 #include "kernel/toolpath/centre_lines.h"
 
@@ -18,8 +19,8 @@ const double steep = std::sin(40 * std::numbers::pi / 180);
 // Of the least width: shorter strands are not worth the start.
 constexpr double shortest_share = 0.5;
 
-// A strand for a part that is a disc, as shares of its radius: its ends' discs just fit.
-constexpr double dot_length_share = 1, dot_width_share = 1;
+// The width of a strand in a part that is a disc, as a share of the disc's radius: half the part's, and so it is as long.
+constexpr double dot_width_share = 1;
 
 // Paths are never held to less than what a file can tell.
 constexpr double least_allowed_mm = 1e-4;
@@ -27,6 +28,25 @@ constexpr double least_allowed_mm = 1e-4;
 struct Range {
     double from_mm, to_mm;
 };
+
+// With round ends.
+double printed_mm2(const Strand& strand) {
+    if (strand.widths_mm.empty()) {
+        const double ends = is_closed(strand) ? 0 : std::numbers::pi / 4 * strand.width_mm;
+        return (length_mm(strand.path) + ends) * strand.width_mm;
+    }
+    const Path& path = std::get<Path>(strand.path);
+    double area = 0;
+    Point2 from = path.start;
+    for (std::size_t i = 0; i < path.segments.size(); ++i) {
+        area += length_mm(from, path.segments[i]) * strand.widths_mm[i];
+        from = path.segments[i].end;
+    }
+    if (is_closed(strand)) return area;
+    for (const double width : {strand.widths_mm.front(), strand.widths_mm.back()})
+        area += std::numbers::pi / 8 * width * width;
+    return area;
+}
 
 class LineMaker {
 public:
@@ -39,6 +59,10 @@ public:
         for (const MedialChain& chain : medial_chains(axis, request_.min_width_mm)) add(chain);
         for (const MedialDisc& disc : axis.discs)
             add_dot(disc.centre, Vector2::UnitX(), disc.radius_mm, 0);
+        double rest = -made_.left_out_mm2 - made_.beside_mm2;
+        for (const Contour& contour : narrow) rest += lyr::area_mm2(contour);
+        for (const Strand& strand : made_.strands) rest -= printed_mm2(strand);
+        if (axis.complete) made_.corners_mm2 = std::max(0.0, rest);
         return std::move(made_);
     }
 
@@ -131,16 +155,17 @@ private:
 
     // Of a part whose largest disc is as good as all of it.
     void add_dot(const Point2& centre, const Vector2& along, double radius_mm, double area_mm2) {
-        const double width = std::min(dot_width_share * radius_mm, request_.max_width_mm);
+        const double width =
+            std::clamp(dot_width_share * radius_mm, request_.min_width_mm, request_.max_width_mm);
+        const double length = 2 * radius_mm - width;
         area_mm2 = std::max(area_mm2, std::numbers::pi * radius_mm * radius_mm);
-        if (width < request_.min_width_mm) {
+        if (length < shortest_share * request_.min_width_mm) {
             made_.left_out_mm2 += area_mm2;
             return;
         }
-        const double length = dot_length_share * radius_mm;
         const Vector2 half = length / 2 * along;
         made_.strands.push_back({Path{centre - half, {{centre + half}}}, width});
-        made_.beside_mm2 += std::max(0.0, area_mm2 - width * length);
+        made_.beside_mm2 += std::max(0.0, area_mm2 - printed_mm2(made_.strands.back()));
     }
 
     CentreLineRequest request_;

@@ -3,18 +3,20 @@
 // The region is as in kernel/region: material on the left, winding around no point more than once.
 //
 // Contract
-//  1. A strand's middle is that of the largest discs that fit into the region, within `allowed_mm`; its width is theirs.
-//     It sticks out by no more than that and half of `width_step_mm`.
+//  1. A strand's middle is that of the largest discs that fit into the region, within `allowed_mm`; its width is
+//     theirs. It sticks out by no more than that and half of `width_step_mm`.
 //  2. Where the width changes by more than `width_step_mm`, the strand has a width for each segment, which is the mean.
 //     The width of a rib with parallel sides is constant, and its strand one line; that of concentric arcs is one arc
 //     about their centre, and of two full circles a full circle.
 //  3. Strands end half their width before the region does. Where three ribs meet, a strand runs through two of them and
 //     the third one's ends beside it. Corners are filled as far as the strand's own discs reach.
-//  4. What is narrower than `min_width_mm` is left out, and what is too short for a strand; `left_out_mm2` has its area.
-//     Where the region is wider than `max_width_mm`, the strand is that wide, and `beside_mm2` is what it leaves.
-//  5. A part that is no longer than wide gets a short strand, half as wide as the part, if that is wide enough.
-//  6. `unresolved` counts regions that nothing could be made of in full: numbers that are not finite or out of range, or
-//     contours that wind around a point more than once.
+//  4. What is narrower than `min_width_mm` is left out, and what is too short for a strand; `left_out_mm2` has its
+//     area. Where the region is wider than `max_width_mm`, the strand is that wide, and `beside_mm2` is what it
+//     leaves; `corners_mm2` is what strands with round ends do not reach besides.
+//  5. A part that is no longer than wide gets a short strand, half as wide as the part but no less than the least
+//     width, if that is not too short.
+//  6. `unresolved` counts regions that nothing could be made of in full: numbers that are not finite or out of range,
+//     or contours that wind around a point more than once.
 
 #pragma once
 
@@ -36,7 +38,7 @@ struct CentreLineRequest {
 
 struct CentreLines {
     std::vector<Strand> strands{};
-    double left_out_mm2 = 0, beside_mm2 = 0;
+    double left_out_mm2 = 0, beside_mm2 = 0, corners_mm2 = 0;
     std::size_t unresolved = 0;
 };
 

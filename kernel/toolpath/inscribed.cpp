@@ -68,7 +68,7 @@ double InscribedDiscs::turn_rad(SiteId site) const {
     return std::abs(piece(site).curvature_per_mm) * piece(site).length_mm;
 }
 
-InscribedDiscs::Foot InscribedDiscs::foot(SiteId site, double at) const {
+SiteFoot InscribedDiscs::foot(SiteId site, double at) const {
     const BoundaryPiece& p = piece(site);
     if (site % 2 == 1) {
         const Eigen::Rotation2Dd turn(at * joints_[site / 2].turn_rad);
@@ -80,15 +80,18 @@ InscribedDiscs::Foot InscribedDiscs::foot(SiteId site, double at) const {
     return {here.point, left_of(here.tangent)};
 }
 
-Point2 InscribedDiscs::point(SiteId site, double at) const {
-    return foot(site, at).point;
+SiteFoot InscribedDiscs::foot_of(SiteId site, const Point2& centre) const {
+    const BoundaryPiece& p = piece(site);
+    if (site % 2 == 1) return {p.end, (centre - p.end).normalized()};
+    const double k = p.curvature_per_mm;
+    const Vector2 left = left_of(p.start_tangent);
+    if (k == 0) return {p.start + (centre - p.start).dot(p.start_tangent) * p.start_tangent, left};
+    const Point2 middle = p.start + left / k;
+    const Vector2 normal = (k > 0 ? middle - centre : centre - middle).normalized();
+    return {middle - normal / k, normal};
 }
 
-Vector2 InscribedDiscs::normal(SiteId site, double at) const {
-    return foot(site, at).normal;
-}
-
-double InscribedDiscs::radius_mm(const Foot& foot, SiteId other) const {
+double InscribedDiscs::radius_mm(const SiteFoot& foot, SiteId other) const {
     if (other % 2 == 1) {
         const Vector2 way = piece(other).end - foot.point;
         const double depth = foot.normal.dot(way);
@@ -163,14 +166,14 @@ double InscribedDiscs::other_place(SiteId site, double at, SiteId other, const P
 }
 
 Touch InscribedDiscs::touch_with(SiteId site, double at, SiteId other) const {
-    const Foot from = foot(site, at);
+    const SiteFoot from = foot(site, at);
     const double radius = std::max(0.0, radius_mm(site, at, other));
     const Point2 centre = from.point + radius * from.normal;
     return {at, other, other_place(site, at, other, centre, radius), centre, radius};
 }
 
 Touch InscribedDiscs::touch(SiteId site, double at) const {
-    const Foot from = foot(site, at);
+    const SiteFoot from = foot(site, at);
     if (site % 2 == 0 && at == 1 && joints_[site / 2].turn_rad > 0)
         return {at, 2 * next_[site / 2], 0, from.point, 0};
     if (site % 2 == 0 && at == 0 && joints_[previous_[site / 2]].turn_rad > 0)

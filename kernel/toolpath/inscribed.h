@@ -1,7 +1,8 @@
 // The largest discs inside a region that touch its boundary at a given place, and where else they touch it.
 //
-// The boundary is seen as sites: its segments and full circles, and the corners where it turns away from the material.
-// Walking along all sites in turn, a disc rolls once around the inside of every contour: along segments, around corners.
+// The boundary is seen as sites: its segments and full circles, and the corners where it turns away from the
+// material. Walking along all sites in turn, a disc rolls once around the inside of every contour: along segments,
+// around corners.
 //
 // Contract
 //  1. A touch's disc has no point of the boundary inside it, within round-off, and both places on it.
@@ -29,6 +30,12 @@ struct Touch {
     double radius_mm = 0;
 };
 
+// A place on a site, a corner's being the point that the disc rolls around.
+struct SiteFoot {
+    Point2 point;
+    Vector2 normal;  // towards the disc's centre, unit
+};
+
 class InscribedDiscs {
 public:
     // Discs of up to `usual_mm` in radius are found fast.
@@ -40,14 +47,14 @@ public:
     const BoundaryPiece& piece(SiteId site) const { return boundary_.pieces()[site / 2]; }
     double curvature_per_mm(SiteId site) const;
     double turn_rad(SiteId site) const;  // in size
-    // Of the site in its direction; a corner's is the point that the disc rolls around.
-    Point2 point(SiteId site, double at) const;
-    // Towards the disc's centre, unit.
-    Vector2 normal(SiteId site, double at) const;
+    SiteFoot foot(SiteId site, double at) const;
+    // Where a disc with this centre touches a site that it is known to touch.
+    SiteFoot foot_of(SiteId site, const Point2& centre) const;
 
     Touch touch(SiteId site, double at) const;
     // The disc that touches the whole line or circle of the other site; negative if there is none.
     double radius_mm(SiteId site, double at, SiteId other) const;
+    double radius_mm(const SiteFoot& foot, SiteId other) const;
     // The touch with this site if there is such a disc.
     Touch touch_with(SiteId site, double at, SiteId other) const;
     // Whether the point of the site's whole line or circle that is nearest to a centre is on the site.
@@ -58,17 +65,11 @@ public:
     double end_towards(SiteId site, SiteId other) const;
 
 private:
-    struct Foot {
-        Point2 point;
-        Vector2 normal;
-    };
     struct Joint {
         SiteId before, after;  // pieces
         double turn_rad;       // positive: to the left
     };
 
-    Foot foot(SiteId site, double at) const;
-    double radius_mm(const Foot& foot, SiteId other) const;
     bool is_passed_over(SiteId site, double at, SiteId other) const;
     double place(SiteId site, const Point2& centre) const;
     double other_place(SiteId site, double at, SiteId other, const Point2& centre,

@@ -1,6 +1,7 @@
-// A disc rolls along each site of the boundary and touches others. Where the other changes between two touches, the disc
-// in between that touches both is found by a root of the difference of the two radii; if it turns out to touch a third,
-// there are two such places. Every touch is one of both sites, so that what is narrow for one is not missed by the other.
+// A disc rolls along each site of the boundary and touches others. Where the other changes between two touches, the
+// disc in between that touches both is found by a root of the difference of the two radii; if it turns out to touch a
+// third, there are two such places. Every touch is one of both sites, so that what is narrow for one is not missed by
+// the other.
 
 #include "kernel/toolpath/medial_axis.h"
 
@@ -25,6 +26,10 @@ constexpr int least_points = 12;
 
 // Touches are refined in that many rounds at most: a halving each, where no root is found.
 constexpr int most_rounds = 60;
+
+// Touches of a region are about ten for each site; where contours cross each other, so that discs are nowhere right,
+// there would be no end of them.
+constexpr std::size_t most_touches = 100;
 
 // Of the region's area, and not less than that of as many square millimetres: what areas may differ by.
 constexpr double area_share = 2e-3, least_area_mm2 = 1e-4;
@@ -53,9 +58,10 @@ public:
         for (int round = 0; round < most_rounds && again; ++round) {
             again = false;
             for (SiteId site = 0; site < discs_.site_count(); ++site)
-                if (changed_[site]) again = refine(site) || again;
+                if (changed_[site] && !is_full()) again = refine(site) || again;
+            if (is_full()) break;
         }
-        axis_.complete = !again;
+        axis_.complete = !again && !is_full();
         for (SiteId site = 0; site < discs_.site_count(); ++site) add_edges(site);
         add_discs();
         return std::move(axis_);
@@ -64,7 +70,10 @@ public:
     double area_mm2() const { return area_mm2_; }
 
 private:
+    bool is_full() const { return count_ > most_touches * discs_.site_count(); }
+
     void insert(SiteId site, const Touch& touch) {
+        ++count_;
         touches_[site].push_back(touch);
         changed_[site] = true;
         if (touch.other == site || touch.radius_mm == 0) return;
@@ -101,6 +110,20 @@ private:
         if (to < from) std::rotate(at(to), at(from), at(from + 1));
     }
 
+    // Touches of one disc, [first, last): the other of the touch before comes first, that of the one after last.
+    static void arrange(std::vector<Touch>& touches, std::size_t first, std::size_t last) {
+        if (first > 0) {
+            const SiteId before = touches[first - 1].other;
+            std::size_t i = first;
+            while (i + 1 < last && touches[i].other != before) ++i;
+            if (touches[i].other == before) move(touches, i, first);
+        }
+        if (last == touches.size()) return;
+        const SiteId after = touches[last].other;
+        for (std::size_t i = last; i-- > first + 1;)
+            if (touches[i].other == after) return move(touches, i, last - 1);
+    }
+
     // Touches of one disc so that their others follow each other as they do before and after.
     void sort(SiteId site) {
         std::vector<Touch>& touches = touches_[site];
@@ -110,18 +133,7 @@ private:
         for (std::size_t first = 0; first < touches.size();) {
             std::size_t last = first + 1;
             while (last < touches.size() && are_one(site, touches[first], touches[last])) ++last;
-            if (first > 0) {
-                const SiteId before = touches[first - 1].other;
-                std::size_t i = first;
-                while (i + 1 < last && touches[i].other != before) ++i;
-                if (touches[i].other == before) move(touches, i, first);
-            }
-            if (last < touches.size()) {
-                std::size_t i = last - 1;
-                while (i > first + 1 && touches[i].other != touches[last].other) --i;
-                if (i > first && touches[i].other == touches[last].other)
-                    move(touches, i, last - 1);
-            }
+            arrange(touches, first, last);
             first = last;
         }
     }
@@ -227,20 +239,40 @@ private:
                                 std::abs(forwards(first.other, first.other_at, last.other_at));
         const int steps = is_straight ? 1 : least_points + static_cast<int>(turn / point_turn_rad);
         MedialEdge edge;
-        Touch before = first;
+        Disc before = disc(site, first);
         double area = 0;
         for (int i = 0; i <= steps; ++i) {
             const double at = first.at + (last.at - first.at) * i / steps;
-            const Touch here = i == 0       ? first
-                               : i == steps ? last
-                                            : discs_.touch_with(site, at, first.other);
-            if (i > 0) area += area_between(site, before, here);
+            const Disc here = i == 0       ? before
+                              : i == steps ? disc(site, last)
+                                           : disc_at(site, at, first.other);
+            area += side_area(site, before.mine.point, here.mine.point, before.centre, here.centre);
+            area += side_area(first.other, here.its.point, before.its.point, here.centre,
+                              before.centre);
             if (edge.points.empty() || here.centre != edge.points.back().centre)
-                edge.points.push_back({here.centre, tangent(site, here), here.radius_mm, area});
+                edge.points.push_back({here.centre, tangent(here), here.radius_mm, area});
             before = here;
         }
         area_mm2_ += area;
         if (length_of(edge) > same_mm) axis_.edges.push_back(std::move(edge));
+    }
+
+    struct Disc {
+        SiteFoot mine, its;
+        Point2 centre;
+        double radius_mm;
+    };
+
+    Disc disc(SiteId site, const Touch& touch) const {
+        return {discs_.foot(site, touch.at), discs_.foot(touch.other, touch.other_at), touch.centre,
+                touch.radius_mm};
+    }
+
+    Disc disc_at(SiteId site, double at, SiteId other) const {
+        const SiteFoot mine = discs_.foot(site, at);
+        const double radius = std::max(0.0, discs_.radius_mm(mine, other));
+        const Point2 centre = mine.point + radius * mine.normal;
+        return {mine, discs_.foot_of(other, centre), centre, radius};
     }
 
     // From one place of a site to another that is not far; a full circle goes on where it starts.
@@ -257,26 +289,18 @@ private:
     }
 
     // The edge leaves to the left of the way from one foot to the other, as seen along the first.
-    Vector2 tangent(SiteId site, const Touch& touch) const {
-        const Vector2 mine = discs_.normal(site, touch.at);
-        const Vector2 its = discs_.normal(touch.other, touch.other_at);
-        const Vector2 across = mine - its;
+    static Vector2 tangent(const Disc& disc) {
+        const Vector2 across = disc.mine.normal - disc.its.normal;
         return Vector2(across.y(), -across.x()).normalized();
     }
 
-    double area_between(SiteId site, const Touch& a, const Touch& b) const {
-        return side_area(site, a.at, b.at, a.centre, b.centre) +
-               side_area(a.other, b.other_at, a.other_at, b.centre, a.centre);
-    }
-
-    // Between a stretch of a site and the chord of the centres; the centres lie to the left.
-    double side_area(SiteId site, double from, double to, const Point2& first,
+    // Between a short stretch of a site and the chord of the centres; the centres lie to the left.
+    double side_area(SiteId site, const Point2& from, const Point2& to, const Point2& first,
                      const Point2& last) const {
-        const Point2 a = discs_.point(site, from), b = discs_.point(site, to);
-        const double quadrangle = cross(last - a, first - b) / 2;
-        const double turn = discs_.turn_rad(site) * forwards(site, from, to);
+        const double quadrangle = cross(last - from, first - to) / 2;
         const double k = discs_.curvature_per_mm(site);
         if (k == 0) return quadrangle;
+        const double turn = 2 * std::asin(std::min(1.0, std::abs(k) * (to - from).norm() / 2));
         return quadrangle + (k > 0 ? 1 : -1) * (turn - std::sin(turn)) / (2 * k * k);
     }
 
@@ -301,6 +325,7 @@ private:
     double usual_mm_;
     std::vector<std::vector<Touch>> touches_;  // by site
     std::vector<bool> changed_;
+    std::size_t count_ = 0;  // of touches
     MedialAxis axis_;
     double area_mm2_ = 0;
 };

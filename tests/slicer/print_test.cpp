@@ -169,3 +169,61 @@ TEST_CASE("slicer: a place that cannot be written is an error of output") {
     REQUIRE(!failed);
     CHECK(failed.error().status == ExitStatus::output);
 }
+
+TEST_CASE(
+    "slicer: what a profile asks for and no print has yet is said, and a part beside its plate "
+    "refused") {
+    Options options;
+    options.profile.layer.height_mm = options.profile.layer.first_height_mm = 0.4;
+    options.profile.support.kind = profile::SupportKind::tree;
+    options.profile.plate.copies = 2;
+    Diagnostics diagnostics;
+    const auto model = load(parts + "cuboid.step", options, diagnostics);
+    REQUIRE(model);
+    diagnostics.clear();
+    const auto print_it = [&] {
+        return print(
+            *model, "cuboid.step", scratch("asked.lyr"), "", options,
+            [](const char*, std::size_t, std::size_t) {}, diagnostics);
+    };
+    REQUIRE(print_it());
+    REQUIRE(diagnostics.size() == 2);
+    CHECK(diagnostics[0].message.find("support.kind") == 0);
+    CHECK(diagnostics[1].message.find("plate.copies") == 0);
+    options.profile.plate.size_mm = {10, 10};
+    const auto refused = print_it();
+    REQUIRE(!refused);
+    CHECK(refused.error().message.find("does not lie on the plate") != std::string::npos);
+    options.profile.plate.size_mm = {1000, 1000};
+    CHECK(print_it());
+}
+
+TEST_CASE("slicer: skirt and brim go around the part on the first layer, and come first") {
+    for (const auto& [kind, role, reach_mm] :
+         {std::tuple(profile::AdhesionKind::skirt, format::Role::skirt, 6.225),
+          {profile::AdhesionKind::brim, format::Role::brim, 5.11}}) {
+        Options options;
+        options.profile.adhesion.kind = kind;
+        options.profile.plate.at_mm = {20, 20};
+        const auto summary = print_part("cuboid.step", scratch("adhesion.lyr"), options);
+        REQUIRE(summary);
+        auto reader = format::Reader::open(scratch("adhesion.lyr"));
+        REQUIRE(reader);
+        CHECK(reader->header().summary.low_x_mm == doctest::Approx(20 - reach_mm).epsilon(0.02));
+        std::vector<format::Role> roles;
+        std::uint32_t layer = 0, last = 0;
+        for (;;) {
+            auto operation = reader->next();
+            REQUIRE(operation);
+            if (!*operation) break;
+            if (const auto* start = std::get_if<format::LayerStart>(&**operation))
+                layer = start->index;
+            const auto* path = std::get_if<format::PathStart>(&**operation);
+            if (!path) continue;
+            roles.push_back(path->style.role);
+            if (path->style.role == role) last = layer;
+        }
+        CHECK(roles.front() == role);
+        CHECK(last == 0);
+    }
+}

@@ -310,6 +310,17 @@ TEST_CASE("centre lines 4: what is wider than the greatest width is filled in th
     CHECK(made.beside_mm2 == doctest::Approx(18.5 * 0.6));
 }
 
+TEST_CASE("centre lines 4: nothing of a region is lost without a count") {
+    for (unsigned seed = 0; seed < 20; ++seed) {
+        Random random(seed);
+        const Contours region{random_ring(random, {0, 0}, random.within(0.2, 0.6))};
+        const CentreLines made = lines_in(region);
+        CHECK(made.unresolved == 0);
+        CHECK(printed_mm2(made) + made.left_out_mm2 + made.beside_mm2 + made.corners_mm2 ==
+              doctest::Approx(total_area(region)).epsilon(0.03));
+    }
+}
+
 TEST_CASE("centre lines 5: a part that is no longer than wide gets a short strand") {
     for (const Contours& region :
          {Contours{FullCircle{{1, 2}, 0.3, true}}, Contours{rectangle(0, 0, 0.6, 0.6)},
@@ -319,9 +330,12 @@ TEST_CASE("centre lines 5: a part that is no longer than wide gets a short stran
         CHECK(made.strands[0].width_mm == doctest::Approx(0.3));
         CHECK(outside_mm(region, made) <= allowed_mm);
     }
-    const CentreLines small = lines_in({FullCircle{{1, 2}, 0.15, true}});
+    const CentreLines small = lines_in({FullCircle{{1, 2}, 0.14, true}});
     CHECK(small.strands.empty());
-    CHECK(small.left_out_mm2 == doctest::Approx(pi * 0.15 * 0.15));
+    CHECK(small.left_out_mm2 == doctest::Approx(pi * 0.14 * 0.14));
+    const CentreLines least = lines_in({FullCircle{{1, 2}, 0.16, true}});
+    REQUIRE(least.strands.size() == 1);
+    CHECK(least.strands[0].width_mm == 0.2);
 }
 
 TEST_CASE("centre lines 6: nothing comes of nothing, and what is invalid is counted") {
@@ -336,6 +350,22 @@ TEST_CASE("centre lines 6: nothing comes of nothing, and what is invalid is coun
     CHECK(centre_lines(plate, {.allowed_mm = nan}).unresolved == 1);
     CHECK(lines_in({Path{{0, 0}, {}}}).strands.empty());
     CHECK(lines_in({Path{{1, 1}, {{{1, 1}}}}}).strands.empty());
+}
+
+TEST_CASE("centre lines 6: contours that cross themselves come to an end and are counted") {
+    std::size_t unresolved = 0;
+    for (unsigned seed = 500; seed < 520; ++seed) {
+        Random random(seed);
+        Path path{{random.within(0, 2), random.within(0, 2)}, {}};
+        for (int i = 0; i < 7; ++i)
+            path.segments.push_back({{random.within(0, 2), random.within(0, 2)},
+                                     random.coin() ? 0 : random.within(-1, 1)});
+        path.segments.push_back({path.start});
+        const CentreLines made = lines_in({path});
+        unresolved += made.unresolved;
+        for (const Strand& strand : made.strands) CHECK(std::isfinite(strand.width_mm));
+    }
+    CHECK(unresolved > 10);
 }
 
 TEST_CASE("centre lines: regions in one call come out as each by itself") {
