@@ -54,13 +54,21 @@ void add_options(CLI::App& app, Arguments& arguments) {
              "Print although the file sets temperatures, which are passed over");
 }
 
+// "1:02:03"
+std::string clock_text(double time_s) {
+    const auto whole_s = static_cast<long long>(time_s);
+    char text[40];
+    std::snprintf(text, sizeof text, "%lld:%02lld:%02lld", whole_s / 3600, whole_s / 60 % 60,
+                  whole_s % 60);
+    return text;
+}
+
 // How far a simulation or print is, as one line.
 run::ProgressSink shown_on(ProgressLine& line) {
     return [&line](const run::Progress& progress) {
-        const auto time_s = static_cast<long long>(progress.time_s);
-        char text[80];
-        std::snprintf(text, sizeof text, "layer %u of %u, %lld:%02lld:%02lld", progress.layer,
-                      progress.layers, time_s / 3600, time_s / 60 % 60, time_s % 60);
+        std::string text = "layer " + std::to_string(progress.layer) + " of " +
+                           std::to_string(progress.layers) + ", " + clock_text(progress.time_s);
+        if (progress.estimated_s > 0) text += " of about " + clock_text(progress.estimated_s);
         line.show(text);
     };
 }

@@ -242,7 +242,7 @@ TEST_CASE("slicer 7: solids that overlap, touch or lie within each other are pri
 TEST_CASE("slicer 7: a single solid's contours pass untouched, in their order") {
     Diagnostics diagnostics;
     const auto model =
-        load(std::string(LYR_FIXTURES) + "/parts/gearbox_base.step", Options(), diagnostics);
+        load(std::string(LYR_FIXTURES) + "/parts/gearbox_base.step", {}, diagnostics);
     REQUIRE(model);
     const Section section = Cutter(*model, {}).cut(3.1);
     REQUIRE(section.solids.size() == 1);
