@@ -147,6 +147,9 @@ std::string summary_text(const Arguments& arguments, const slicer::Summary& summ
         }
         text += '\n';
     }
+    if (summary.uncrossed_layers > 0)
+        text += "the section crosses itself in " + counted(summary.uncrossed_layers, "layer") +
+                "; what it winds around is printed\n";
     char line[160];
     if (arguments.sections()) {
         text += output_name(arguments.report_path);

@@ -4,17 +4,24 @@
 
 #include "kernel/brep/placement.h"
 #include "kernel/section/cutter.h"
+#include "slicer/layers.h"
 
 namespace lyr::slicer {
 
-Eigen::AlignedBox3d bounding_box(const Model& model, const Tolerance& tolerance) {
+Eigen::AlignedBox3d bounding_box(const Model& model, const Tolerance& tolerance, unsigned threads) {
     Eigen::AlignedBox3d box;
-    for (int axis = 0; axis < 3; ++axis) {
-        const Model turned = transformed(model, turned_up(Vector3::Unit(axis)));
-        const HeightRange range = Cutter(turned, tolerance).height_range();
-        box.min()[axis] = range.bottom_mm;
-        box.max()[axis] = range.top_mm;
-    }
+    in_order(
+        3, threads,
+        [&](std::size_t axis) {
+            const auto number = static_cast<Eigen::Index>(axis);
+            const Model turned = transformed(model, turned_up(Vector3::Unit(number)));
+            return Cutter(turned, tolerance).height_range();
+        },
+        [&](std::size_t axis, const HeightRange& range) {
+            box.min()[static_cast<Eigen::Index>(axis)] = range.bottom_mm;
+            box.max()[static_cast<Eigen::Index>(axis)] = range.top_mm;
+            return true;
+        });
     return box;
 }
 

@@ -8,6 +8,7 @@
 namespace lyr::slicer {
 
 // Corners are exact to resolution_mm for elementary surfaces.
-Eigen::AlignedBox3d bounding_box(const Model& model, const Tolerance& tolerance);
+Eigen::AlignedBox3d bounding_box(const Model& model, const Tolerance& tolerance,
+                                 unsigned threads = 1);
 
 }  // namespace lyr::slicer

@@ -72,6 +72,18 @@ std::vector<LayerSpan> layer_spans(double part_height_mm, const profile::Layer& 
     }
 }
 
+void add_walls(OutlinedLayer& layer, const LayerSpan& span, const Options& options) {
+    layer.walls = walls_of(layer.outline, span, options);
+    if (layer.walls.second_method + layer.walls.unresolved == 0) return;
+    // Where faces of the model overlap a little, its section crosses itself and is no region. To look for that costs as
+    // much as a wall, so it is done only where the walls' own checks found something.
+    RegionResult region = cleaned(layer.outline, options.tolerance().unite_mm());
+    if (!region.changed || region.unresolved > 0) return;
+    layer.outline = std::move(region.contours);
+    layer.uncrossed = true;
+    layer.walls = walls_of(layer.outline, span, options);
+}
+
 OutlinedLayer outline_layer(const Cutter& cutter, std::size_t index, const LayerSpan& span,
                             const Eigen::AlignedBox3d& box, const Options& options) {
     const Location where{.layer = static_cast<int>(index + 1), .z_mm = span.middle_mm()};
@@ -83,7 +95,6 @@ OutlinedLayer outline_layer(const Cutter& cutter, std::size_t index, const Layer
                        .united = region.changed,
                        .slivers = region.slivers,
                        .diagnostics = section.diagnostics};
-    made.printed = figures_of(made.outline);
     const auto warn = [&](const std::string& message) {
         made.diagnostics.push_back({Severity::warning, ExitStatus::geometry, message, where});
     };
@@ -93,8 +104,9 @@ OutlinedLayer outline_layer(const Cutter& cutter, std::size_t index, const Layer
         made.error = inside.error();
         return made;
     }
+    add_walls(made, span, options);
+    made.printed = figures_of(made.outline);
     made.seen = SkinOutline(made.outline, options.profile.skin.width_mm);
-    made.walls = walls_of(made.outline, span, options);
     if (made.walls.unresolved > 0)
         warn(counted(made.walls.unresolved, "offset") +
              " of the layer could not be verified: look at its walls with lyrview");

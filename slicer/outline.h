@@ -28,10 +28,14 @@ struct OutlinedLayer {
     Walls walls{};
     SectionFigures section{}, printed{};
     bool united = false;
+    bool uncrossed = false;  // the section crossed itself; the outline is what it winds around
     std::size_t slivers = 0;
     Diagnostics diagnostics{};
     std::optional<Diagnostic> error{};
 };
+
+// The walls of layer.outline, which is mended first where it crosses itself and they cannot be made for that.
+void add_walls(OutlinedLayer& layer, const LayerSpan& span, const Options& options);
 
 // `box`: the whole part's, on the bed. `index` counts from 0.
 OutlinedLayer outline_layer(const Cutter& cutter, std::size_t index, const LayerSpan& span,

@@ -28,6 +28,7 @@ void count(const OutlinedLayer& layer, Summary& summary) {
     summary.lines += layer.printed.lines;
     summary.arcs += layer.printed.arcs;
     summary.united_layers += layer.united ? 1 : 0;
+    summary.uncrossed_layers += layer.uncrossed ? 1 : 0;
     summary.slivers += layer.slivers;
 }
 
@@ -82,7 +83,7 @@ Status check_plate(const Eigen::AlignedBox3d& box, const profile::Plate& plate) 
 }
 
 Model on_bed(Model model, const Options& options, Eigen::AlignedBox3d& box) {
-    box = bounding_box(model, options.tolerance());
+    box = bounding_box(model, options.tolerance(), thread_count(options));
     const Vector3 move(options.profile.plate.at_mm[0] - box.min().x(),
                        options.profile.plate.at_mm[1] - box.min().y(), -box.min().z());
     box.translate(move);

@@ -16,7 +16,9 @@
 //     are an error (status geometry), unless `allow_open`.
 //  7. Solids that overlap or touch are printed as one: a layer's walls and fill are those of the union of their sections.
 //     Reports keep solids apart.
-//  8. The file has each layer's time as estimate.h has it, for the printer of the options.
+//  8. Where a section crosses itself, as faces overlap a little, and its walls could not be made for that, the layer is
+//     what the section winds around; the summary counts such layers.
+//  9. The file has each layer's time as estimate.h has it, for the printer of the options.
 
 #pragma once
 
@@ -56,7 +58,8 @@ using Progress = std::function<void(const char* stage, std::size_t done, std::si
 // Contours, lines and arcs are those of the layers' outlines, or of the sections.
 struct Summary {
     std::size_t solids = 0, faces = 0, layers = 0, contours = 0, circles = 0, lines = 0, arcs = 0;
-    std::size_t united_layers = 0;  // where solids overlapped or touched
+    std::size_t united_layers = 0;     // where solids overlapped or touched
+    std::size_t uncrossed_layers = 0;  // whose sections crossed themselves
     std::size_t slivers = 0;  // contours left out there: gaps and leftovers within the tolerance
     std::uint64_t bytes = 0;
     Eigen::AlignedBox3d box{};           // of the model, as it is printed

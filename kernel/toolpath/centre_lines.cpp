@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "kernel/region/verify.h"
 #include "kernel/toolpath/middle_path.h"
 
 namespace lyr {
@@ -24,6 +25,42 @@ constexpr double dot_width_share = 1;
 
 // Paths are never held to less than what a file can tell.
 constexpr double least_allowed_mm = 1e-4;
+
+// Of what is allowed, how far chords may be off the arcs that they stand for.
+constexpr double chord_share = 0.25;
+
+Path halves_of(const FullCircle& circle) {
+    const Vector2 out(circle.radius_mm, 0);
+    const double sagitta_mm = circle.counter_clockwise ? circle.radius_mm : -circle.radius_mm;
+    return {circle.centre + out,
+            {{circle.centre - out, sagitta_mm}, {circle.centre + out, sagitta_mm}}};
+}
+
+// Discs between arcs that are almost one circle, or between arcs and lines that they are almost, touch both along their
+// length but for round-off. Between chords they touch points. Where discs find no end because of that, paths are fitted to
+// the middle of chords, from which they differ by less than allowed; they are lines and arcs as ever.
+std::vector<Contour> of_chords(Region region, double off_mm) {
+    std::vector<Contour> result;
+    for (const Contour& contour : region) {
+        const auto* circle = std::get_if<FullCircle>(&contour);
+        const Path arcs = circle ? halves_of(*circle) : std::get<Path>(contour);
+        Path chords{arcs.start, {}};
+        Point2 from = arcs.start;
+        for (const Segment& segment : arcs.segments) {
+            const double turn_by_length =
+                std::abs(sweep_rad(from, segment)) * lyr::length_mm(from, segment);
+            const int count =
+                std::max(1, static_cast<int>(std::ceil(std::sqrt(turn_by_length / (8 * off_mm)))));
+            for (int i = 1; i < count; ++i)
+                chords.segments.push_back(
+                    {point_at(from, segment, static_cast<double>(i) / count)});
+            chords.segments.push_back({segment.end});
+            from = segment.end;
+        }
+        result.push_back(std::move(chords));
+    }
+    return result;
+}
 
 struct Range {
     double from_mm, to_mm;
@@ -54,7 +91,9 @@ public:
         : request_(request), allowed_mm_(std::max(request.allowed_mm, least_allowed_mm)) {}
 
     CentreLines make(Region narrow) {
-        const MedialAxis axis = medial_axis(narrow, request_.max_width_mm);
+        MedialAxis axis = medial_axis(narrow, request_.max_width_mm);
+        if (!axis.complete && std::all_of(narrow.begin(), narrow.end(), region::is_finite))
+            axis = medial_axis(of_chords(narrow, chord_share * allowed_mm_), request_.max_width_mm);
         made_.unresolved += !axis.complete;
         for (const MedialChain& chain : medial_chains(axis, request_.min_width_mm)) add(chain);
         for (const MedialDisc& disc : axis.discs)

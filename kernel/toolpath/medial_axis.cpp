@@ -61,7 +61,6 @@ public:
                 if (changed_[site] && !is_full()) again = refine(site) || again;
             if (is_full()) break;
         }
-        axis_.complete = !again && !is_full();
         for (SiteId site = 0; site < discs_.site_count(); ++site) add_edges(site);
         add_discs();
         return std::move(axis_);
@@ -384,7 +383,7 @@ MedialAxis medial_axis(Region region, double usual_width_mm) {
     double area = 0;
     for (const Contour& contour : region) area += lyr::area_mm2(contour);
     const double allowed = std::max(least_area_mm2, area_share * area);
-    axis.complete = axis.complete && std::abs(maker.area_mm2() - area) <= allowed;
+    axis.complete = std::abs(maker.area_mm2() - area) <= allowed;
     return axis;
 }
 

@@ -368,6 +368,52 @@ TEST_CASE("centre lines 6: contours that cross themselves come to an end and are
     CHECK(unresolved > 10);
 }
 
+TEST_CASE(
+    "centre lines: discs that touch almost along a whole arc, or an almost straight one, find an "
+    "end") {
+    const Contours almost_disc{Path{{2.5, 8.6861567361},
+                                    {{{2.5137660986, 8.6875169383}},
+                                     {{2.5206935883, 8.6881799206}, -5.35e-06},
+                                     {{2.5206935883, 9.1351259449}, 0.20373549133},
+                                     {{2.5137660986, 9.1357889272}, -5.35e-06},
+                                     {{2.5, 9.1371491294}},
+                                     {{2.4862339014, 9.1357889272}},
+                                     {{2.4793064117, 9.1351259449}, -5.35e-06},
+                                     {{2.4793064117, 8.6881799206}, 0.20373549133},
+                                     {{2.4862339014, 8.6875169383}, -5.35e-06},
+                                     {{2.5, 8.6861567361}}}}};
+    const Contours flat_side{Path{{1.57146018366, 0.42853981637},
+                                  {{{1.57146018366, 1.16621782706}},
+                                   {{1.37112636751, 0.81923009187}, 5.7868e-07},
+                                   {{1.12656111595, 0.62407957334}, -0.0295758685},
+                                   {{1.15609338366, 0.42853981637}, 0.0850664086},
+                                   {{1.57146018366, 0.42853981637}}}}};
+    for (const Contours& shape : {almost_disc, flat_side})
+        for (const Motion& motion : motions) {
+            const Contours region = moved_region(shape, motion);
+            const CentreLines made = lines_in(region);
+            CHECK(made.unresolved == 0);
+            CHECK(made.strands.size() >= 1);
+            CHECK(outside_mm(region, made) <= allowed_mm + width_step_mm / 2);
+        }
+}
+
+TEST_CASE("centre lines: a ring whose outside steps by nanometres where it starts is a ring") {
+    const Contours ring{Path{{43.999886933064261, 18.967193254176603},
+                             {{{43.999886933104193, 69.032806733170901}, 25.032270641976272},
+                              {{43.999879749557437, 69.032806733324762}},
+                              {{43.999872566010673, 69.032806733098099}},
+                              {{43.99987256597074, 18.967193254249405}, 25.032016961409841},
+                              {{43.999879749517504, 18.96719325402276}},
+                              {{43.999886933064261, 18.967193254176603}}}},
+                        FullCircle{{43.99999999991843, 44}, 23.354701094848604, false}};
+    const CentreLines made =
+        centre_lines(ring, {.min_width_mm = 0.5, .max_width_mm = 2, .allowed_mm = allowed_mm});
+    CHECK(made.unresolved == 0);
+    REQUIRE(made.strands.size() == 1);
+    CHECK(is_closed(made.strands[0]));
+}
+
 TEST_CASE("centre lines: regions in one call come out as each by itself") {
     const Contours one{rectangle(0, 0, 10, 0.5)}, other{slot(0, 3, 9, 3.7)};
     const CentreLines both = lines_in({one[0], other[0]});
