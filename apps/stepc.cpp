@@ -60,9 +60,9 @@ constexpr Program program{
     "many\n"
     "layers as have their middle below the part's top.\n"
     "The summary goes to standard error where the print or the report goes to standard output.\n"
-    "Exit status: 0 done, 2 options, 3 input, 4 not supported yet, 5 geometry, 6 output, 8 stopped "
-    "on\n"
-    "request.\n"};
+    "Exit status: 0 done, 2 options, 3 input, 4 not supported yet, 5 geometry, 6 output, 7 the "
+    "printer\n"
+    "cannot do it, 8 stopped on request.\n"};
 
 // Only the direction counts; no vector that means one is longer.
 constexpr NumberRange direction{-1'000, 1'000, ""};

@@ -100,6 +100,10 @@ TEST_CASE("stepc --printer: a slower machine takes longer, and what is no printe
     folder.copy("parts/cuboid.step", "p.step");
     folder.copy("printers/cantilever.toml", "slow.toml");
     folder.write("wrong.toml", "nmae = \"x\"\n");
+    const std::string stuck =
+        std::regex_replace(text_of(folder / "slow.toml"), std::regex("max_speed_mm_s = 60"),
+                           "max_speed_mm_s = 0.000001");
+    folder.write("stuck.toml", stuck);
     REQUIRE(folder.run("stepc p.step -o quick.lyr").status == 0);
     REQUIRE(folder.run("stepc p.step -o slow.lyr --printer slow.toml").status == 0);
     REQUIRE(folder.run("stepc p.step -o piped.lyr --printer - < slow.toml").status == 0);
@@ -111,6 +115,7 @@ TEST_CASE("stepc --printer: a slower machine takes longer, and what is no printe
         CHECK(folder.files() == files);
     };
     refused("--printer wrong.toml", 3, "did you mean `name`?");
+    refused("--printer stuck.toml", 7, "longer than 11 days");
     refused("--printer none.toml", 3, "none.toml");
     refused("--printer slow.toml -o slow.toml", 2, "the printer's file");
     refused("--printer slow.toml --section-at z.txt --report r", 2, "leave out --printer");
