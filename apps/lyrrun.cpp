@@ -5,10 +5,9 @@
 
 #include "apps/command_line.h"
 #include "apps/files.h"
+#include "apps/printer_file.h"
 #include "apps/progress_line.h"
 #include "apps/signal_watch.h"
-#include "base/read_text.h"
-#include "target/config/printer.h"
 #include "target/run/print.h"
 #include "target/run/simulate.h"
 
@@ -38,9 +37,6 @@ constexpr Program program{
     "Exit status: 0 done, 2 options, 3 input, 4 not supported yet, 6 output, 7 the machine cannot\n"
     "or did not do it, 8 stopped on request.\n"};
 
-// What the reader of printer files takes, too.
-constexpr std::size_t largest_printer_bytes = std::size_t{1} << 20;
-
 void add_options(CLI::App& app, Arguments& arguments) {
     add_file(app, "print", arguments.lyr_path,
              "The .lyr file that stepc wrote; it is read more than once, so that it cannot be -, "
@@ -58,23 +54,23 @@ void add_options(CLI::App& app, Arguments& arguments) {
              "Print although the file sets temperatures, which are passed over");
 }
 
+// "1:02:03"
+std::string clock_text(double time_s) {
+    const auto whole_s = static_cast<long long>(time_s);
+    char text[40];
+    std::snprintf(text, sizeof text, "%lld:%02lld:%02lld", whole_s / 3600, whole_s / 60 % 60,
+                  whole_s % 60);
+    return text;
+}
+
 // How far a simulation or print is, as one line.
 run::ProgressSink shown_on(ProgressLine& line) {
     return [&line](const run::Progress& progress) {
-        const auto time_s = static_cast<long long>(progress.time_s);
-        char text[80];
-        std::snprintf(text, sizeof text, "layer %u of %u, %lld:%02lld:%02lld", progress.layer,
-                      progress.layers, time_s / 3600, time_s / 60 % 60, time_s % 60);
+        std::string text = "layer " + std::to_string(progress.layer) + " of " +
+                           std::to_string(progress.layers) + ", " + clock_text(progress.time_s);
+        if (progress.estimated_s > 0) text += " of about " + clock_text(progress.estimated_s);
         line.show(text);
     };
-}
-
-Result<config::Printer> read_printer(const std::string& path) {
-    if (path.empty()) return config::generic_printer();
-    if (path != "-") return config::read_printer(path);
-    const auto text = read_text(path, largest_printer_bytes);
-    if (!text) return text.error();
-    return config::parse_printer(*text, standard_input_name);
 }
 
 Status simulate(const Arguments& arguments, const config::Printer& printer) {

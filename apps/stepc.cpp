@@ -10,6 +10,7 @@
 
 #include "apps/command_line.h"
 #include "apps/files.h"
+#include "apps/printer_file.h"
 #include "apps/progress_line.h"
 #include "apps/signal_watch.h"
 #include "base/read_text.h"
@@ -24,7 +25,7 @@ using namespace lyr;
 using namespace lyr::command_line;
 
 struct Arguments {
-    std::string step_path, lyr_path, heights_path, report_path;
+    std::string step_path, lyr_path, heights_path, report_path, printer_path;
     std::array<double, 3> up{0, 0, 1};
     profile::Request settings;
     bool print_config = false;
@@ -35,7 +36,8 @@ struct Arguments {
     std::vector<NamedFile> inputs() const {
         return {{"the part", step_path},
                 {"the heights", heights_path},
-                {"the profile", settings.profile == "-" ? "-" : ""}};
+                {"the profile", settings.profile == "-" ? "-" : ""},
+                {"the printer's file", printer_path}};
     }
     std::vector<NamedFile> outputs() const {
         return {{"the print", lyr_path}, {"the report", report_path}};
@@ -49,6 +51,7 @@ constexpr Program program{
     "  stepc part.step -o part.lyr --layer-height 0.1     finer\n"
     "  stepc part.step --profile petg --set perimeters.count=4   another material, more walls\n"
     "  stepc --profile petg --print-config                all settings, and where they come from\n"
+    "  stepc part.step -o part.lyr --printer printer.toml     how long it takes on your own\n"
     "  stepc part.step -o part.lyr --up 0,-1,0            print it lying on another side\n"
     "  stepc part.step --section-at z.txt --report s.jsonl   areas at heights of your own\n"
     "  stepc part.step -o - | lyrview - --info            into a pipe\n"
@@ -57,9 +60,9 @@ constexpr Program program{
     "many\n"
     "layers as have their middle below the part's top.\n"
     "The summary goes to standard error where the print or the report goes to standard output.\n"
-    "Exit status: 0 done, 2 options, 3 input, 4 not supported yet, 5 geometry, 6 output, 8 stopped "
-    "on\n"
-    "request.\n"};
+    "Exit status: 0 done, 2 options, 3 input, 4 not supported yet, 5 geometry, 6 output, 7 the "
+    "printer\n"
+    "cannot do it, 8 stopped on request.\n"};
 
 // Only the direction counts; no vector that means one is longer.
 constexpr NumberRange direction{-1'000, 1'000, ""};
@@ -115,6 +118,9 @@ void add_options(CLI::App& app, Arguments& arguments) {
     slicer::Options& options = arguments.options;
     add_files(app, arguments);
     add_settings(app, arguments);
+    add_file(app, "--printer", arguments.printer_path,
+             "The machine whose limits the time is estimated with (printer.toml); -: standard "
+             "input; without it, a generic one");
     add_numbers(app, "--up", "X,Y,Z", arguments.up, direction,
                 "Build direction in the model's coordinates, of any length");
     add_flag(app, "--allow-open", options.allow_open,
@@ -153,7 +159,8 @@ std::string summary_text(const Arguments& arguments, const slicer::Summary& summ
                       "%.3f x %.3f x %.3f mm at %g mm a layer, tolerance %g mm\n", size.x(),
                       size.y(), size.z(), arguments.options.profile.layer.height_mm,
                       arguments.options.tolerance().total_mm);
-        text += line + output_name(arguments.lyr_path) + ": " + counted(summary.bytes, "byte");
+        text += line + slicer::estimate_text(summary, arguments.options.machine().name) +
+                output_name(arguments.lyr_path) + ": " + counted(summary.bytes, "byte");
     }
     std::snprintf(line, sizeof line, ", %.2f s, ", time_s);
     return text + line + counted(findings, "finding") + '\n';
@@ -195,6 +202,8 @@ Status complete(Arguments& arguments) {
         return usage("--section-at needs --report FILE");
     if (arguments.sections() && !arguments.lyr_path.empty())
         return usage("--section-at writes no print: leave out -o");
+    if (arguments.sections() && !arguments.printer_path.empty())
+        return usage("--section-at estimates no time: leave out --printer");
     if (!arguments.sections() && arguments.lyr_path.empty()) {
         if (arguments.step_path == "-") return usage("a part from standard input needs -o FILE");
         arguments.lyr_path = std::filesystem::path(arguments.step_path).replace_extension(".lyr");
@@ -219,6 +228,9 @@ Status work(Arguments& arguments) {
     if (!settings) return settings.error();
     if (arguments.print_config) return tell(to_toml(*settings));
     if (const Status taken = take_settings(arguments, *settings); !taken) return taken;
+    const auto printer = read_printer(arguments.printer_path);
+    if (!printer) return printer.error();
+    arguments.options.printer = *printer;
     const SignalWatch watch(program.name);
     const auto begin = std::chrono::steady_clock::now();
     ProgressLine line;

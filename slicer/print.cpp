@@ -94,6 +94,7 @@ format::Metadata metadata(const std::string& source_name, const Options& options
     format::Metadata data;
     data.generator = "stepc " LYR_VERSION;
     data.source_name = source_name;
+    data.printer = options.machine().name;
     data.material = options.profile.filament.material;
     data.profile = options.profile_name;
     data.tolerance_mm = options.tolerance().total_mm;
@@ -149,28 +150,62 @@ std::vector<std::vector<Seam>> seams_of(std::span<const OutlinedLayer> layers, S
 struct FilledLayer {
     std::size_t unresolved = 0;
     std::optional<format::EncodedLayer> encoded{};
+    LayerEstimate estimate{};
     std::optional<Diagnostic> error{};
 };
 
 FilledLayer fill_and_encode(std::size_t i, const LayerSpan& span, const OutlinedLayer& outlined,
                             std::span<const SkinOutline> outlines, std::span<const Seam> seams,
-                            const Options& options) {
+                            const Options& options, const Estimator& estimator) {
     const LayerFill fill = fill_layer(i, span, outlined.walls, outlines, options);
     FilledLayer made{.unresolved = fill.unresolved};
     auto encoded =
         encode_layer({i, span, outlined, fill, seams}, options, quantum_for(options.tolerance()));
-    if (encoded) {
-        made.encoded = std::move(*encoded);
-    } else {
+    if (!encoded) {
         made.error = encoded.error();
+        return made;
     }
+    const auto estimate = estimator.layer(*encoded, static_cast<std::uint32_t>(i));
+    if (!estimate) {
+        made.error = estimate.error();
+        return made;
+    }
+    made.encoded = std::move(*encoded);
+    made.estimate = *estimate;
     return made;
 }
 
-// Fills, orders and writes.
-Status write_layers(std::span<const OutlinedLayer> layers, std::span<const LayerSpan> spans,
-                    const Options& options, format::Writer& writer, const Progress& progress,
-                    Diagnostics& diagnostics) {
+// Appends layers, each with its time: that of its own motions and of the way to it.
+class TimedWriter {
+public:
+    TimedWriter(format::Writer& writer, const Estimator& estimator)
+        : writer_(writer), estimator_(estimator), head_(estimator.start()) {}
+
+    Status append(format::EncodedLayer layer, std::uint32_t index, const LayerEstimate& made) {
+        const auto way = estimator_.approach(head_, layer, index);
+        if (!way) return way.error();
+        layer.state.estimated_time_s = way->time_s() + made.estimate.time_s();
+        estimate_ += *way;
+        estimate_ += made.estimate;
+        head_ = made.end;
+        return writer_.append(layer);
+    }
+    const Estimate& estimate() const { return estimate_; }
+
+private:
+    format::Writer& writer_;
+    const Estimator& estimator_;
+    moves::Head head_;
+    Estimate estimate_{};
+};
+
+// Fills, orders and writes. The print's estimate.
+Result<Estimate> write_layers(std::span<const OutlinedLayer> layers,
+                              std::span<const LayerSpan> spans, const Options& options,
+                              format::Writer& writer, const Progress& progress,
+                              Diagnostics& diagnostics) {
+    const Estimator estimator(options.machine(), options.profile.filament.diameter_mm);
+    TimedWriter timed(writer, estimator);
     const auto seams = seams_of(layers, seam_choice(options.profile.perimeters.seam));
     std::vector<SkinOutline> outlines;
     for (const OutlinedLayer& layer : layers) outlines.push_back(layer.seen);
@@ -178,7 +213,7 @@ Status write_layers(std::span<const OutlinedLayer> layers, std::span<const Layer
     in_order(
         layers.size(), thread_count(options),
         [&](std::size_t i) {
-            return fill_and_encode(i, spans[i], layers[i], outlines, seams[i], options);
+            return fill_and_encode(i, spans[i], layers[i], outlines, seams[i], options, estimator);
         },
         [&](std::size_t i, FilledLayer made) {
             if (made.unresolved > 0)
@@ -189,7 +224,9 @@ Status write_layers(std::span<const OutlinedLayer> layers, std::span<const Layer
                      {.layer = static_cast<int>(i + 1), .z_mm = spans[i].middle_mm()}});
             if (made.error) {
                 failed = made.error;
-            } else if (Status appended = writer.append(*made.encoded); !appended) {
+            } else if (Status appended = timed.append(std::move(*made.encoded),
+                                                      static_cast<std::uint32_t>(i), made.estimate);
+                       !appended) {
                 failed = appended.error();
             }
             if (failed) return false;
@@ -197,7 +234,7 @@ Status write_layers(std::span<const OutlinedLayer> layers, std::span<const Layer
             return true;
         });
     if (failed) return *failed;
-    return Done{};
+    return timed.estimate();
 }
 
 }  // namespace
@@ -224,9 +261,8 @@ Result<Summary> print(Model model, const std::string& source_name, const std::st
     }
     const auto layers = outlined(placed, spans, options, progress, summary, diagnostics);
     if (!layers) return layers.error();
-    if (Status written = write_layers(*layers, spans, options, *writer, progress, diagnostics);
-        !written)
-        return written.error();
+    const auto estimate = write_layers(*layers, spans, options, *writer, progress, diagnostics);
+    if (!estimate) return estimate.error();
     if (report) {
         for (const OutlinedLayer& layer : *layers) report->write(to_json(layer.section));
         if (Status written = report->flush(); !written) return written.error();
@@ -234,6 +270,9 @@ Result<Summary> print(Model model, const std::string& source_name, const std::st
     auto totals = writer->finish();
     if (!totals) return totals.error();
     summary.bytes = totals->bytes;
+    summary.estimate = *estimate;
+    summary.filament_mm = totals->summary.filament_mm;
+    summary.mass_g = totals->summary.mass_g;
     if (report) {
         if (Status written = report->commit(); !written) return written.error();
     }

@@ -18,10 +18,12 @@
 //     Reports keep solids apart.
 //  8. Where a section crosses itself, as faces overlap a little, and its walls could not be made for that, the layer is
 //     what the section winds around; the summary counts such layers.
+//  9. The file has each layer's time as estimate.h has it, for the printer of the options.
 
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +32,8 @@
 #include "kernel/geometry/tolerance.h"
 #include "kernel/section/cutter.h"
 #include "profile/profile.h"
+#include "slicer/estimate.h"
+#include "target/config/printer.h"
 
 namespace lyr::slicer {
 
@@ -37,11 +41,14 @@ struct Options {
     lyr::profile::Profile profile;
     std::string profile_name;   // for the file's metadata, as the configuration
     std::string configuration;  // all settings as text, verbatim
+    // Whose limits the estimates keep; none: a generic one.
+    std::optional<config::Printer> printer{};
     Vector3 up = Vector3::UnitZ();
     bool allow_open = false;
     bool strict = false;   // refuse a model with geometric defects instead of healing it
     unsigned threads = 0;  // 0: as many as there are processors
 
+    config::Printer machine() const { return printer.value_or(config::generic_printer()); }
     Tolerance tolerance() const { return {profile.slicing.tolerance_mm}; }
 };
 
@@ -55,8 +62,13 @@ struct Summary {
     std::size_t uncrossed_layers = 0;  // whose sections crossed themselves
     std::size_t slivers = 0;  // contours left out there: gaps and leftovers within the tolerance
     std::uint64_t bytes = 0;
-    Eigen::AlignedBox3d box{};  // of the model, as it is printed
+    Eigen::AlignedBox3d box{};           // of the model, as it is printed
+    Estimate estimate{};                 // of a print
+    double filament_mm = 0, mass_g = 0;  // as the file has them
 };
+
+// For people: time and filament, then a line for each role that is printed.
+std::string estimate_text(const Summary& summary, const std::string& printer_name);
 
 struct SectionFigures {
     double z_mm = 0, area_mm2 = 0, length_mm = 0;

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <numbers>
 
+#include "target/moves/move_maker.h"
+
 namespace lyr::run {
 namespace {
 
@@ -75,7 +77,7 @@ Result<Inspection> inspect(const std::string& path, const config::Printer& print
     Inspection inspection;
     inspection.header = reader->header();
     inspection.filament_diameter_mm =
-        printer.filament_diameter_mm.value_or(inspection.header.metadata.filament_diameter_mm);
+        moves::filament_diameter_mm(printer, inspection.header.metadata.filament_diameter_mm);
     if (!(inspection.filament_diameter_mm > 0))
         return Diagnostic{
             Severity::error,

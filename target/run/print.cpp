@@ -111,12 +111,14 @@ Result<bool> drain(Executor& executor, Shared& shared) {
 }
 
 // Until the real-time thread has ended.
-void watch(const StopSignals& signals, Shared& shared, const PrintJob& job, std::uint32_t layers) {
+void watch(const StopSignals& signals, Shared& shared, const PrintJob& job,
+           const Inspection& inspection) {
     while (!shared.finished.load()) {
         if (signals.wait_ms(signal_wait_ms)) ++shared.stop_requests;
         if (job.progress)
-            job.progress({shared.layer.load(), layers,
-                          static_cast<double>(shared.time_ns.load()) / ns_per_s});
+            job.progress({shared.layer.load(), inspection.totals.layers,
+                          static_cast<double>(shared.time_ns.load()) / ns_per_s,
+                          inspection.header.summary.estimated_time_s});
     }
 }
 
@@ -167,7 +169,7 @@ Result<PrintReport> run(const PrintJob& job, const Prepared& prepared, gpio::Gpi
         if (!released && executed) executed = released.error();
         shared.finished.store(true);
     });
-    watch(signals, shared, job, prepared.inspection.totals.layers);
+    watch(signals, shared, job, prepared.inspection);
     edges.join();
     planner.join();
     if (!executed) return executed.error();

@@ -110,7 +110,8 @@ Status Simulation::pump(Executor& executor, ReplaceFile* trace) {
 bool Simulation::asked_to_stop(const Executor& executor) const {
     if (job_.progress)
         job_.progress({stream_.steps().layer(), inspection_.totals.layers,
-                       static_cast<double>(executor.time_ns()) / ns_per_s});
+                       static_cast<double>(executor.time_ns()) / ns_per_s,
+                       inspection_.header.summary.estimated_time_s});
     return job_.stop && job_.stop();
 }
 

@@ -28,7 +28,8 @@ namespace lyr::run {
 struct Progress {
     std::uint32_t layer = 0;  // from 1, 0: before the first
     std::uint32_t layers = 0;
-    double time_s = 0;  // of the print
+    double time_s = 0;       // of the print
+    double estimated_s = 0;  // of the whole print, as the file states it; 0: it does not
 };
 using ProgressSink = std::function<void(const Progress&)>;
 // Asked now and then; true ends the simulation with status stopped.

@@ -264,3 +264,24 @@ TEST_CASE("inspect 2: a second tool is refused as not supported") {
     REQUIRE_FALSE(refused.ok());
     CHECK(refused.error().status == ExitStatus::unsupported);
 }
+
+TEST_CASE("simulate: progress tells the time that the file states for the whole print") {
+    for (const double stated_s : {0.0, 12.5}) {
+        const std::string file =
+            write_print("stated_time", {draw_square, draw_square}, {},
+                        [&](format::LayerState& state) { state.estimated_time_s = stated_s / 2; });
+        std::vector<Progress> told;
+        const Result<SimulationReport> report =
+            simulate({file,
+                      config::generic_printer(),
+                      {},
+                      [&](const Progress& progress) { told.push_back(progress); },
+                      {}});
+        REQUIRE(report.ok());
+        REQUIRE(!told.empty());
+        for (const Progress& progress : told) {
+            CHECK(progress.estimated_s == stated_s);
+            CHECK(progress.layers == 2);
+        }
+    }
+}
