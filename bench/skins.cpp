@@ -41,18 +41,6 @@ struct Totals {
     double top_mm2 = 0, bridge_mm2 = 0, solid_mm2 = 0, sparse_mm2 = 0, all_mm2 = 0;
 };
 
-double area_mm2(Region region) {
-    double area = 0;
-    for (const Contour& contour : region) area += area_mm2(contour);
-    return area;
-}
-
-double length_mm(Region region) {
-    double length = 0;
-    for (const Contour& contour : region) length += length_mm(contour);
-    return length;
-}
-
 struct Layer {
     std::vector<Contour> outline, inside;
 };

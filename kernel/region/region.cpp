@@ -16,6 +16,19 @@
 #include "kernel/region/verify.h"
 
 namespace lyr {
+
+double area_mm2(Region region) {
+    double area = 0;
+    for (const Contour& contour : region) area += area_mm2(contour);
+    return area;
+}
+
+double length_mm(Region region) {
+    double length = 0;
+    for (const Contour& contour : region) length += length_mm(contour);
+    return length;
+}
+
 namespace {
 
 using region::Input;
@@ -113,12 +126,6 @@ std::vector<Contour> sorted(Region contours) {
     std::vector<Contour> result;
     for (const Contour* contour : order) result.push_back(*contour);
     return result;
-}
-
-double area_mm2(Region region) {
-    double area = 0;
-    for (const Contour& contour : region) area += area_mm2(contour);
-    return area;
 }
 
 struct Swept {

@@ -33,6 +33,10 @@ namespace lyr {
 
 using Region = std::span<const Contour>;
 
+// Sums over the contours: a region's own area, and how long its boundary is.
+double area_mm2(Region region);
+double length_mm(Region region);
+
 struct RegionResult {
     std::vector<Contour> contours{};
     bool changed = false;        // false: just the input's contours

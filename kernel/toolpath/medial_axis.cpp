@@ -380,8 +380,7 @@ MedialAxis medial_axis(Region region, double usual_width_mm) {
     AxisMaker maker(region, usual_width_mm);
     MedialAxis axis = maker.make();
     join_ends(axis.edges);
-    double area = 0;
-    for (const Contour& contour : region) area += lyr::area_mm2(contour);
+    const double area = area_mm2(region);
     const double allowed = std::max(least_area_mm2, area_share * area);
     axis.complete = std::abs(maker.area_mm2() - area) <= allowed;
     return axis;

@@ -40,12 +40,6 @@ Vector2 right_of(const Vector2& direction) {
     return {direction.y(), -direction.x()};
 }
 
-double area_mm2(Region region) {
-    double area = 0;
-    for (const Contour& contour : region) area += area_mm2(contour);
-    return area;
-}
-
 class Check {
 public:
     Check(Region result, Region region, const OffsetRequest& request)

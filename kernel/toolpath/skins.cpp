@@ -272,12 +272,8 @@ std::optional<LayerSkins> divided(Region inside, const Parts& parts, const Windo
 
 // Smaller than it may be, or narrower than a line, taken over its length.
 bool is_small(Region part, const SkinRequest& request) {
-    double area_mm2 = 0, length_mm = 0;
-    for (const Contour& contour : part) {
-        area_mm2 += lyr::area_mm2(contour);
-        length_mm += lyr::length_mm(contour);
-    }
-    return area_mm2 < request.min_sparse_mm2 || 2 * area_mm2 < request.width_mm * length_mm;
+    const double area = area_mm2(part);
+    return area < request.min_sparse_mm2 || 2 * area < request.width_mm * length_mm(part);
 }
 
 // Moves small parts of the sparse fill to the solid one. False: unresolved.

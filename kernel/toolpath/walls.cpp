@@ -5,7 +5,8 @@
 #include "kernel/toolpath/walls.h"
 
 #include <cmath>
-#include <numbers>
+
+#include "kernel/toolpath/infill.h"
 
 namespace lyr {
 namespace {
@@ -23,25 +24,12 @@ constexpr double mitre_limit = 5;
 // share of the width.
 constexpr double cut_margin_share = 0.05;
 
-double area_of(Region region) {
-    double sum = 0;
-    for (const Contour& contour : region) sum += area_mm2(contour);
-    return sum;
-}
-
-double length_of(Region region) {
-    double sum = 0;
-    for (const Contour& contour : region) sum += length_mm(contour);
-    return sum;
-}
-
 class WallMaker {
 public:
     WallMaker(Region outline, const WallRequest& request)
         : request_(request),
           base_(outline.begin(), outline.end()),
-          spacing_mm_(request.width_mm -
-                      request.overlap * request.height_mm * (1 - std::numbers::pi / 4)) {}
+          spacing_mm_(line_spacing_mm(request.width_mm, request.overlap * request.height_mm)) {}
 
     Walls make() {
         walls_.inside = base_;
@@ -62,8 +50,8 @@ private:
 
     // Whether the boundaries at two distances are what an even change leads to from one to the other.
     static bool is_even(Region outer, Region inner, double distance_mm) {
-        const double between = area_of(outer) - area_of(inner);
-        const double expected = distance_mm * (length_of(outer) + length_of(inner)) / 2;
+        const double between = area_mm2(outer) - area_mm2(inner);
+        const double expected = distance_mm * (length_mm(outer) + length_mm(inner)) / 2;
         return std::abs(between - expected) <= unseen_mm * unseen_mm;
     }
 
@@ -101,15 +89,16 @@ private:
         const double middle = middle_mm(depth);
         const double outer_mm = depth == 0 ? 0 : middle - spacing_mm_ / 2;
         const std::vector<Contour> outer = depth == 0 ? base_ : inside_;
-        std::vector<Contour> wall = shrunk(middle), inner = shrunk(middle + spacing_mm_ / 2);
+        std::vector<Contour> wall = shrunk(middle);
+        std::vector<Contour> inner = shrunk(middle + spacing_mm_ / 2);
         const bool is_wanted = depth == 0 ? request_.thin_walls : request_.gap_fill;
         if (is_wanted && !is_even(outer, inner, middle + spacing_mm_ / 2 - outer_mm)) {
             std::vector<Contour> wide = wide_parts(wall, middle);
-            const bool is_cut = area_of(wall) - area_of(wide) > unseen_mm * unseen_mm;
+            const bool is_cut = area_mm2(wall) - area_mm2(wide) > unseen_mm * unseen_mm;
             if (is_cut) wall = std::move(wide);
             const std::vector<Contour> covered = offset_by(wall, middle - outer_mm, Corner::mitre);
             // Else only edges have vanished.
-            if (is_cut || area_of(outer) - area_of(covered) > unseen_mm * unseen_mm) {
+            if (is_cut || area_mm2(outer) - area_mm2(covered) > unseen_mm * unseen_mm) {
                 base_ = wall;
                 base_mm_ = middle;
                 inner = shrunk(middle + spacing_mm_ / 2);
@@ -140,7 +129,7 @@ private:
         const std::vector<Contour> opened = offset_by(fit, half_mm, Corner::mitre);
         const std::vector<Contour> narrow =
             opened.empty() ? opened : operated(opened, rest, Operation::intersect);
-        walls_.left_out_mm2 += area_of(rest) - area_of(narrow);
+        walls_.left_out_mm2 += area_mm2(rest) - area_mm2(narrow);
         auto& list = depth == 0 ? walls_.thin : walls_.gaps;
         list.insert(list.end(), narrow.begin(), narrow.end());
     }

@@ -20,12 +20,6 @@ Contour polygon(std::initializer_list<Point2> corners, double turn_rad) {
     return path;
 }
 
-double area_of(Region region) {
-    double sum = 0;
-    for (const Contour& contour : region) sum += area_mm2(contour);
-    return sum;
-}
-
 OutlinedLayer walled(std::vector<Contour> outline) {
     OutlinedLayer layer{.outline = std::move(outline)};
     add_walls(layer, span, {});
@@ -53,6 +47,6 @@ TEST_CASE("an outline that does not cross itself is left as it is") {
     const OutlinedLayer layer = walled(outline);
     CHECK_FALSE(layer.uncrossed);
     CHECK(layer.outline.size() == 1);
-    CHECK(area_of(layer.outline) == area_of(outline));
+    CHECK(area_mm2(layer.outline) == area_mm2(outline));
     CHECK(layer.walls.unresolved == 0);
 }
