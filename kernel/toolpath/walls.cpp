@@ -90,7 +90,9 @@ private:
         const double outer_mm = depth == 0 ? 0 : middle - spacing_mm_ / 2;
         const std::vector<Contour> outer = depth == 0 ? base_ : inside_;
         std::vector<Contour> wall = shrunk(middle);
-        std::vector<Contour> inner = shrunk(middle + spacing_mm_ / 2);
+        // make() has found it already, unless a wall was cut since.
+        const bool is_known = depth + 1 == request_.count && base_mm_ == 0;
+        std::vector<Contour> inner = is_known ? walls_.inside : shrunk(middle + spacing_mm_ / 2);
         const bool is_wanted = depth == 0 ? request_.thin_walls : request_.gap_fill;
         if (is_wanted && !is_even(outer, inner, middle + spacing_mm_ / 2 - outer_mm)) {
             std::vector<Contour> wide = wide_parts(wall, middle);
