@@ -19,10 +19,6 @@ constexpr double widest_arc_rad = 1.5 * std::numbers::pi;
 // Rounding moves a point of an arc by at most this many quanta (format/writer.h, contract 1).
 constexpr double quanta_off = 1.3;
 
-double length_of(const Strand& strand) {
-    return length_mm(strand.path);
-}
-
 Strand reversed(Strand strand) {
     auto* path = std::get_if<Path>(&strand.path);
     if (!path) return strand;
@@ -145,7 +141,7 @@ private:
         };
         const Walls& walls = layer_.outlined.walls;
         for (std::size_t i = 0; i < walls.strands.size(); ++i)
-            add(wall_style(i), length_of(walls.strands[i]));
+            add(wall_style(i), lyr::length_mm(walls.strands[i].path));
         for (const Piece& piece : layer_.fill.pieces) add(piece_style(piece), length_mm(piece));
         return time_s;
     }
@@ -176,7 +172,7 @@ private:
         const Walls& walls = layer_.outlined.walls;
         const Strand& strand = walls.strands[wall];
         return styles_.of(walls.depths[wall] == 0 ? Role::outer_wall : Role::inner_wall,
-                          strand.width_mm, length_of(strand), 1);
+                          strand.width_mm, lyr::length_mm(strand.path), 1);
     }
 
     format::PathStyle piece_style(const Piece& piece) const {

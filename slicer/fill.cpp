@@ -48,26 +48,6 @@ InfillPattern kernel_pattern(profile::SkinPattern pattern) {
 // How far the flow of solid fill may be off one.
 constexpr double least_flow = 0.8, most_flow = 1.1;
 
-double length_of(const Strand& strand) {
-    return lyr::length_mm(strand.path);
-}
-
-double length_of(const HatchRun& run) {
-    double length = 0;
-    Point2 at = start_of(run);
-    for (std::size_t i = 0; i < run.rows.size(); ++i) {
-        const bool along = i % 2 == 0;
-        const HatchRow& row = run.rows[i];
-        const Vector2 left(-run.direction.y(), run.direction.x());
-        const Point2 foot = (run.offset_mm + static_cast<double>(i) * run.pitch_mm) * left;
-        const Point2 start = foot + (along ? row.start_mm : row.end_mm) * run.direction;
-        if (row.linked) length += (start - at).norm();
-        length += row.end_mm - row.start_mm;
-        at = foot + (along ? row.end_mm : row.start_mm) * run.direction;
-    }
-    return length;
-}
-
 double radians(double degrees) {
     return degrees * std::numbers::pi / 180;
 }
@@ -157,13 +137,12 @@ private:
 
     // What lines reach over into walls and links add makes up for what is left beside them, by the flow.
     void balance(std::size_t first, Region region, double width_mm) {
-        double area_mm2 = 0, lines_mm = 0;
-        for (const Contour& contour : region) area_mm2 += lyr::area_mm2(contour);
+        double lines_mm = 0;
         for (std::size_t i = first; i < fill.pieces.size(); ++i)
             lines_mm += length_mm(fill.pieces[i]);
         const double filled_mm2 = lines_mm * line_spacing_mm(width_mm, span_.height_mm());
         if (!(filled_mm2 > 0)) return;
-        const double flow = std::clamp(area_mm2 / filled_mm2, least_flow, most_flow);
+        const double flow = std::clamp(area_mm2(region) / filled_mm2, least_flow, most_flow);
         for (std::size_t i = first; i < fill.pieces.size(); ++i) fill.pieces[i].flow = flow;
     }
 
@@ -176,7 +155,8 @@ private:
 }  // namespace
 
 double length_mm(const Piece& piece) {
-    return std::visit([](const auto& way) { return length_of(way); }, piece.way);
+    const auto* run = std::get_if<HatchRun>(&piece.way);
+    return run ? lyr::length_mm(*run) : lyr::length_mm(std::get<Strand>(piece.way).path);
 }
 
 LayerFill fill_layer(std::size_t index, const LayerSpan& span, const Walls& walls,

@@ -287,6 +287,19 @@ Point2 end_of(const HatchRun& run) {
     return on_row(run, run.rows.size() - 1, run.rows.size() % 2 == 1 ? row.end_mm : row.start_mm);
 }
 
+double length_mm(const HatchRun& run) {
+    double length = 0;
+    Point2 at = start_of(run);
+    for (std::size_t i = 0; i < run.rows.size(); ++i) {
+        const HatchRow& row = run.rows[i];
+        const bool along = i % 2 == 0;
+        if (row.linked) length += (on_row(run, i, along ? row.start_mm : row.end_mm) - at).norm();
+        length += row.end_mm - row.start_mm;
+        at = on_row(run, i, along ? row.end_mm : row.start_mm);
+    }
+    return length;
+}
+
 HatchRun reversed(const HatchRun& run) {
     const std::size_t last = run.rows.size() - 1;
     // The last row was run along the direction, or against it; now it is the first, and along it.

@@ -35,6 +35,8 @@ struct HatchRun {
 Point2 start_of(const HatchRun& run);
 Point2 end_of(const HatchRun& run);
 HatchRun reversed(const HatchRun& run);
+// What is printed: rows and links.
+double length_mm(const HatchRun& run);
 
 struct LinkLimits {
     double stray_mm = 0;
