@@ -41,7 +41,10 @@ constexpr std::size_t stride = 4;
 // Neighbours that are farther apart than this share of the stretch do not show what arcs do between them: there the cubic
 // through them is looked at, in so many places; a single span is all that arcs can be held to, in more.
 constexpr double wide_share = 1.0 / 16;
-constexpr int places_between = 3, places_in_single_span = 9;
+constexpr std::size_t places_between = 3;
+constexpr int places_in_single_span = 9;
+
+using PlacesInSpan = std::array<Point2, places_between>;
 
 // The sagitta of the arc over `chord` that leaves along `tangent`.
 double sagitta_from_tangent(const Vector2& chord, const Vector2& tangent) {
@@ -302,15 +305,35 @@ private:
                 if (!is_beside(points_[i].point)) return false;
         const double wide2 = wide_share * wide_share * chord.squaredNorm();
         if (widest_mm2_ <= wide2) return true;
-        const int places = end == start + 1 ? places_in_single_span : places_between;
+        if (end == start + 1) return cubic_within(start, is_beside);
         for (std::uint32_t i = start; i < end; ++i) {
             if (!((point(i + 1).point - point(i).point).squaredNorm() > wide2)) continue;
-            for (int k = 1; k <= places; ++k)
-                if (!is_beside(
-                        between(point(i), point(i + 1), static_cast<double>(k) / (places + 1))))
-                    return false;
+            for (const Point2& p : places_in_span(i))
+                if (!is_beside(p)) return false;
         }
         return true;
+    }
+
+    template <class IsBeside>
+    bool cubic_within(std::uint32_t span, IsBeside is_beside) const {
+        for (int k = 1; k <= places_in_single_span; ++k)
+            if (!is_beside(between(point(span), point(span + 1),
+                                   static_cast<double>(k) / (places_in_single_span + 1))))
+                return false;
+        return true;
+    }
+
+    // Many arcs are tried along one span.
+    const PlacesInSpan& places_in_span(std::uint32_t span) const {
+        if (in_spans_.empty()) in_spans_.resize(last_);
+        std::optional<PlacesInSpan>& places = in_spans_[span];
+        if (!places) {
+            places.emplace();
+            for (std::size_t k = 0; k < places_between; ++k)
+                (*places)[k] = between(point(span), point(span + 1),
+                                       static_cast<double>(k + 1) / (places_between + 1));
+        }
+        return *places;
     }
 
     void trace_back(std::vector<Segment>& out) const {
@@ -330,7 +353,8 @@ private:
     std::uint32_t farthest_ = 0;     // of all kept places
     std::uint32_t last_length_ = 8;  // of an arc, in points: where to look first
     std::vector<Place> places_;
-    std::array<std::vector<std::uint32_t>, 3> reached_;  // by n, n + 1 and n + 2 arcs
+    mutable std::vector<std::optional<PlacesInSpan>> in_spans_;  // made when they are asked for
+    std::array<std::vector<std::uint32_t>, 3> reached_;          // by n, n + 1 and n + 2 arcs
 };
 
 }  // namespace

@@ -7,7 +7,9 @@
 #include <numbers>
 #include <utility>
 
+#include "kernel/brep/surface_foot.h"
 #include "kernel/contour/arc.h"
+#include "kernel/geometry/tolerance.h"
 
 namespace lyr {
 namespace {
@@ -132,19 +134,25 @@ double short_way(double difference, double period) {
     return period > 0 ? difference - period * std::round(difference / period) : difference;
 }
 
-std::vector<Point2> parameters_along(const Surface& surface, const std::vector<Point3>& points) {
-    const auto* spline = std::get_if<SharedBSplineSurface>(&surface);
-    std::vector<Point2> result;
-    for (const Point3& point : points) {
-        const std::size_t n = result.size();
-        // Searched for once; from there on, points follow each other evenly, but for the corners.
-        if (!spline || n == 0) {
-            result.push_back(invert(surface, point));
-        } else {
-            const Point2 guess = n > 1 ? Point2(2 * result[n - 1] - result[n - 2]) : result[n - 1];
-            result.push_back(invert_near(**spline, point, guess));
-        }
+// Feet of an outline's points on a B-spline surface. One as far off as neighbours are apart is another place's neighbour.
+std::vector<Point2> feet_of(const BSplineSurface& surface, const std::vector<Point3>& points) {
+    constexpr double doubtful_share = 0.125;
+    SurfaceFoot foot(surface);
+    std::vector<Point2> feet;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const double step_mm = i > 0 ? (points[i] - points[i - 1]).norm() : 0;
+        foot.move_to(points[i],
+                     std::max({resolution_mm, 2 * foot.distance_mm(), doubtful_share * step_mm}));
+        feet.push_back(foot.uv());
     }
+    return feet;
+}
+
+std::vector<Point2> parameters_along(const Surface& surface, const std::vector<Point3>& points) {
+    if (const auto* spline = std::get_if<SharedBSplineSurface>(&surface))
+        return feet_of(**spline, points);
+    std::vector<Point2> result;
+    for (const Point3& point : points) result.push_back(invert(surface, point));
     return result;
 }
 

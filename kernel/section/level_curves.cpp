@@ -258,7 +258,8 @@ double Tracker::bend_mm(const CellCurve& curve) const {
     const Vector2 box = extent(curve);
     const double share_u = box.x() / (patch.to_u - patch.from_u);
     const double share_v = box.y() / (patch.to_v - patch.from_v);
-    return whole.along_u_mm * std::pow(share_u, 4) + whole.along_v_mm * std::pow(share_v, 4);
+    const double u2 = share_u * share_u, v2 = share_v * share_v;
+    return whole.along_u_mm * u2 * u2 + whole.along_v_mm * v2 * v2;
 }
 
 // Into how many spans a cell's curve is divided to begin with: one that comes back to where it began (a cell may go once
@@ -270,7 +271,7 @@ int Tracker::first_spans(const CellCurve& curve, const CurvePoint& start, double
     // arrive along it. With a point for every other degree none is left between two; nor are there any on spans that are
     // nearly cubic, which goes with the fourth power of their length.
     const BezierPatch& patch = mesh_.patches[cell.patch];
-    const double cubic_spans = std::ceil(std::pow(bend_mm(curve) / (allowed_mm_ / 4), 0.25));
+    const double cubic_spans = std::ceil(std::sqrt(std::sqrt(bend_mm(curve) / (allowed_mm_ / 4))));
     const int most = std::max(patch.degree_u, patch.degree_v) / 2 + 1;
     const int spans = static_cast<int>(std::clamp(cubic_spans, 1.0, static_cast<double>(most)));
     if (chord_mm > farthest_from_chord_mm) return spans;
