@@ -43,7 +43,7 @@ public:
           vertices_(snap_mm * vertex_share),
           result_{.sources = sources_of(inputs)},
           boxes_(boxes_of(result_.sources, snap_mm)),
-          tree_(boxes_),
+          tree_(boxes_, BoxOrder::along_contours),
           passings_(result_.sources.size()) {}
 
     Arrangement result() {

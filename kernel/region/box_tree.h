@@ -1,4 +1,7 @@
-// Boxes in a tree, halved along their longer side: which of them meet a box.
+// Boxes in a tree: which of them meet a box.
+//
+// Boxes that come in an order in which neighbours are near each other, as along contours, are halved as they come, which
+// is quickly done; others along the longer side of what they lie in.
 
 #pragma once
 
@@ -10,9 +13,11 @@
 
 namespace lyr::region {
 
+enum class BoxOrder { along_contours, any };
+
 class BoxTree {
 public:
-    explicit BoxTree(std::span<const Box2> boxes);
+    BoxTree(std::span<const Box2> boxes, BoxOrder order);
 
     // Calls take(index) for every box that meets `box`, borders included. The order depends on the boxes alone.
     template <class Take>
@@ -26,6 +31,12 @@ public:
         if (!nodes_.empty()) visit(0, wanted, take);
     }
 
+    // Whether holds(index) is true for any box that meets `box`; it is asked no more once it does.
+    template <class Holds>
+    bool any(const Box2& box, Holds holds) const {
+        return !nodes_.empty() && any(0, box, holds);
+    }
+
     Box2 bounds() const { return nodes_.empty() ? Box2() : nodes_.front().box; }
 
 private:
@@ -35,13 +46,7 @@ private:
         std::uint32_t first, last, second;
     };
 
-    // Twice the centre, which does as well.
-    struct Place {
-        Point2 centre2;
-        std::uint32_t item;
-    };
-
-    void build(std::span<Place> places, std::uint32_t first, std::uint32_t last);
+    void build(std::uint32_t first, std::uint32_t last);
 
     template <class Wanted, class Take>
     void visit(std::uint32_t index, Wanted& wanted, Take& take) const {
@@ -55,6 +60,16 @@ private:
         }
         visit(index + 1, wanted, take);
         visit(node.second, wanted, take);
+    }
+
+    template <class Holds>
+    bool any(std::uint32_t index, const Box2& box, Holds& holds) const {
+        const Node& node = nodes_[index];
+        if (!node.box.intersects(box)) return false;
+        if (node.second != 0) return any(index + 1, box, holds) || any(node.second, box, holds);
+        for (std::uint32_t i = node.first; i < node.last; ++i)
+            if (boxes_[i].intersects(box) && holds(items_[i])) return true;
+        return false;
     }
 
     std::vector<Node> nodes_;

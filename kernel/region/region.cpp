@@ -118,16 +118,6 @@ bool precedes(const Contour& a, const Contour& b) {
         });
 }
 
-std::vector<Contour> sorted(Region contours) {
-    std::vector<const Contour*> order;
-    for (const Contour& contour : contours) order.push_back(&contour);
-    std::sort(order.begin(), order.end(),
-              [](const Contour* a, const Contour* b) { return precedes(*a, *b); });
-    std::vector<Contour> result;
-    for (const Contour* contour : order) result.push_back(*contour);
-    return result;
-}
-
 struct Swept {
     region::Arrangement arrangement;
     std::vector<region::Sweep> sweeps;  // by part
@@ -285,7 +275,7 @@ std::vector<std::size_t> groups_of(std::span<const Region> regions, double allow
         while (group[r] != r) r = group[r] = group[group[r]];
         return r;
     };
-    const region::BoxTree tree(boxes);
+    const region::BoxTree tree(boxes, region::BoxOrder::any);
     for (std::size_t i = 0; i < boxes.size(); ++i) {
         tree.meeting(boxes[i], [&](std::uint32_t j) {
             const std::size_t a = find(owner[i]), b = find(owner[j]);
@@ -344,6 +334,16 @@ AreaBounds bounds_of(Operation operation, double a_mm2, double b_mm2) {
 }
 
 }  // namespace
+
+std::vector<Contour> sorted(Region contours) {
+    std::vector<const Contour*> order;
+    for (const Contour& contour : contours) order.push_back(&contour);
+    std::sort(order.begin(), order.end(),
+              [](const Contour* a, const Contour* b) { return precedes(*a, *b); });
+    std::vector<Contour> result;
+    for (const Contour* contour : order) result.push_back(*contour);
+    return result;
+}
 
 RegionResult united(std::span<const Region> regions, double allowed_mm, double sliver_mm) {
     for (const Region& region : regions) {

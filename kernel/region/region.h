@@ -37,6 +37,9 @@ using Region = std::span<const Contour>;
 double area_mm2(Region region);
 double length_mm(Region region);
 
+// In the order of contract 5.
+std::vector<Contour> sorted(Region contours);
+
 struct RegionResult {
     std::vector<Contour> contours{};
     bool changed = false;        // false: just the input's contours

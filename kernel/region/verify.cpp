@@ -49,18 +49,16 @@ std::vector<std::uint32_t> longest_edges(const Arrangement& arrangement, const S
 bool windings_agree(std::span<const Input> inputs, const Arrangement& arrangement,
                     const Sweep& sweep, double snap_mm) {
     const WindingCount count(inputs, arrangement.sources);
-    const BoxTree tree(boxes_of(arrangement, sweep));
+    const BoxTree tree(boxes_of(arrangement, sweep), BoxOrder::any);
     const auto shape = [&](std::uint32_t e) {
         return shape_of(sweep.edges[e], arrangement.vertices);
     };
     const double clear_mm = clear_snaps * snap_mm, near_mm = near_snaps * snap_mm;
     const auto is_alone = [&](std::uint32_t e, const Point2& middle) {
         const Vector2 margin(clear_mm, clear_mm);
-        bool alone = true;
-        tree.meeting({middle - margin, middle + margin}, [&](std::uint32_t other) {
-            alone = alone && (other == e || !passes(shape(other), middle, clear_mm));
+        return !tree.any({middle - margin, middle + margin}, [&](std::uint32_t other) {
+            return other != e && passes(shape(other), middle, clear_mm);
         });
-        return alone;
     };
     const std::vector<std::uint32_t> longest = longest_edges(arrangement, sweep);
     return std::all_of(longest.begin(), longest.end(), [&](std::uint32_t e) {

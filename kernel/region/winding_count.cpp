@@ -22,7 +22,7 @@ bool is_left_of(const Point2& point, const Curve& curve) {
 }  // namespace
 
 WindingCount::WindingCount(std::span<const Input> inputs, std::span<const Source> sources)
-    : inputs_(inputs), sources_(sources), tree_(boxes_of(sources)) {}
+    : inputs_(inputs), sources_(sources), tree_(boxes_of(sources), BoxOrder::along_contours) {}
 
 Winding WindingCount::at(const Point2& point) const {
     Winding sum;
@@ -40,11 +40,8 @@ Winding WindingCount::at(const Point2& point) const {
 
 bool WindingCount::is_near(const Point2& point, double within_mm) const {
     const Vector2 margin(within_mm, within_mm);
-    bool near = false;
-    tree_.meeting({point - margin, point + margin}, [&](std::uint32_t s) {
-        near = near || passes(sources_[s].curve, point, within_mm);
-    });
-    return near;
+    return tree_.any({point - margin, point + margin},
+                     [&](std::uint32_t s) { return passes(sources_[s].curve, point, within_mm); });
 }
 
 }  // namespace lyr::region

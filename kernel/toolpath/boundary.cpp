@@ -62,21 +62,10 @@ region::Box2 circle_box(const BoundaryPiece& piece) {
         .extend(piece.end);
 }
 
-// Not the least: that of the tangents' triangle, for what is at most a quarter of a circle.
-region::Box2 box_of(const BoundaryPiece& piece) {
-    if (piece.start_tangent.dot(piece.end_tangent) < 0 || piece.is_wide) return circle_box(piece);
-    region::Box2 box(piece.start);
-    box.extend(piece.end);
-    if (piece.curvature_per_mm == 0) return box;
-    const double tangent_mm = (piece.end - piece.start).squaredNorm() /
-                              (piece.end - piece.start).dot(piece.start_tangent) / 2;
-    return box.extend(piece.start + tangent_mm * piece.start_tangent);
-}
-
 std::vector<region::Box2> boxes_of(const std::vector<BoundaryPiece>& pieces) {
     std::vector<region::Box2> boxes;
     boxes.reserve(pieces.size());
-    for (const BoundaryPiece& piece : pieces) boxes.push_back(box_of(piece));
+    for (const BoundaryPiece& piece : pieces) boxes.push_back(piece.box());
     return boxes;
 }
 
@@ -160,6 +149,16 @@ BoundaryPoint BoundaryPiece::at(double fraction) const {
             cosine * middle_tangent + sine * left};
 }
 
+// That of the tangents' triangle, for what is at most a quarter of a circle.
+region::Box2 BoundaryPiece::box() const {
+    if (start_tangent.dot(end_tangent) < 0 || is_wide) return circle_box(*this);
+    region::Box2 box(start);
+    box.extend(end);
+    if (curvature_per_mm == 0) return box;
+    const Vector2 chord = end - start;
+    return box.extend(start + chord.squaredNorm() / chord.dot(start_tangent) / 2 * start_tangent);
+}
+
 std::vector<BoundaryPiece> boundary_pieces(Region region) {
     std::vector<BoundaryPiece> pieces;
     for (std::uint32_t c = 0; c < region.size(); ++c) {
@@ -187,7 +186,9 @@ double BoundaryPiece::distance_mm(const Point2& point) const {
     return std::sqrt(std::min((point - start).squaredNorm(), (point - end).squaredNorm()));
 }
 
-Boundary::Boundary(Region region) : pieces_(boundary_pieces(region)), tree_(boxes_of(pieces_)) {}
+Boundary::Boundary(Region region)
+    : pieces_(boundary_pieces(region)),
+      tree_(boxes_of(pieces_), region::BoxOrder::along_contours) {}
 
 double Boundary::distance_mm(const Point2& point, double within_mm) const {
     const Vector2 margin(within_mm, within_mm);
@@ -199,11 +200,9 @@ double Boundary::distance_mm(const Point2& point, double within_mm) const {
 
 bool Boundary::is_near(const Point2& point, double within_mm, std::size_t except) const {
     const Vector2 margin(within_mm, within_mm);
-    bool near = false;
-    tree_.meeting({point - margin, point + margin}, [&](std::uint32_t i) {
-        near = near || (i != except && pieces_[i].distance_mm(point) <= within_mm);
+    return tree_.any({point - margin, point + margin}, [&](std::uint32_t i) {
+        return i != except && pieces_[i].distance_mm(point) <= within_mm;
     });
-    return near;
 }
 
 std::optional<std::uint32_t> Boundary::nearest(const Point2& point, double within_mm) const {

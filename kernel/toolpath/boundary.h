@@ -45,6 +45,8 @@ struct BoundaryPiece {
         return {start, end, middle, middle_tangent, curvature_per_mm, length_mm / 2};
     }
     double distance_mm(const Point2& point) const;
+    // Not the least one.
+    region::Box2 box() const;
 };
 
 // Calls take(before, piece) for every piece of closed contours, in their order, with the one that it follows. A full
@@ -86,6 +88,12 @@ public:
     void crossings(const Point2& from, const Point2& to,
                    std::vector<BoundaryCrossing>& found) const;
 
+    // Whether holds(index) is true for any piece whose box meets this one.
+    template <class Holds>
+    bool any(const region::Box2& box, Holds holds) const {
+        return tree_.any(box, holds);
+    }
+
     // Calls take(index) for every piece whose box meets this one.
     template <class Take>
     void meeting(const region::Box2& box, Take take) const {
@@ -95,6 +103,14 @@ public:
 private:
     std::vector<BoundaryPiece> pieces_;
     region::BoxTree tree_;
+};
+
+// A region with its boundary, of which much is asked. The contours must outlive it.
+struct BoundedRegion {
+    explicit BoundedRegion(Region region) : contours(region), boundary(region) {}
+
+    Region contours;
+    Boundary boundary;
 };
 
 }  // namespace lyr

@@ -8,6 +8,7 @@
 #include "kernel/toolpath/offset_check.h"
 #include "kernel/toolpath/offset_curve.h"
 #include "kernel/toolpath/offset_sweeps.h"
+#include "kernel/toolpath/uncross.h"
 
 namespace lyr {
 namespace {
@@ -17,10 +18,13 @@ namespace {
 constexpr double region_share = 0.5;
 constexpr double source_share = 0.25;
 
-std::optional<OffsetFault> fault_of(const RegionResult& result, Region region,
+// In allowed_mm: what is nearer to another part of the boundary is for the region operations.
+constexpr double clear_share = 0.25;
+
+std::optional<OffsetFault> fault_of(const RegionResult& result, const BoundedRegion& region,
                                     const OffsetRequest& request) {
     if (result.unresolved > 0) return OffsetFault{OffsetFault::Kind::region};
-    return fault_of(result.contours, region, request);
+    return fault_of(BoundedRegion(result.contours), region, request);
 }
 
 // The same request of an operation that may move that share.
@@ -29,32 +33,49 @@ OffsetRequest within(OffsetRequest request, double share) {
     return request;
 }
 
+// Where parallels cross but at corners and in single points: nearly all walls.
+std::optional<OffsetResult> trimmed(const BoundedRegion& region, const OffsetRequest& request) {
+    const auto curves = trimmed_curves(region.contours, request);
+    if (!curves) return std::nullopt;
+    const auto contours = uncrossed(BoundedRegion(*curves), clear_share * request.allowed_mm);
+    if (!contours) return std::nullopt;
+    OffsetResult result{.contours = sorted(*contours)};
+    if (fault_of(BoundedRegion(result.contours), region, request)) return std::nullopt;
+    return result;
+}
+
 }  // namespace
 
-OffsetResult settled(const RegionResult& first, Region region, const OffsetRequest& request) {
+OffsetResult settled(const RegionResult& first, const BoundedRegion& region,
+                     const OffsetRequest& request) {
     if (!fault_of(first, region, request)) {
         return {.contours = first.contours, .slivers = first.slivers};
     }
-    const RegionResult source = cleaned(region, source_share * request.allowed_mm);
+    const RegionResult source = cleaned(region.contours, source_share * request.allowed_mm);
     RegionResult second = offset_by_sweeps(source.contours, within(request, region_share));
     auto fault = source.unresolved > 0 ? std::optional(OffsetFault{OffsetFault::Kind::region})
-                                       : fault_of(second, source.contours, request);
+                                       : fault_of(second, BoundedRegion(source.contours), request);
     return {.contours = std::move(second.contours),
             .slivers = second.slivers,
             .second_method = true,
             .unresolved = fault};
 }
 
-OffsetResult offset(Region region, const OffsetRequest& request) {
+OffsetResult offset(const BoundedRegion& region, const OffsetRequest& request) {
+    const std::vector<Contour> given(region.contours.begin(), region.contours.end());
     if (!std::isfinite(request.distance_mm) || !(request.allowed_mm > 0) ||
-        !std::all_of(region.begin(), region.end(), region::is_finite)) {
-        return {.contours = {region.begin(), region.end()},
-                .unresolved = OffsetFault{OffsetFault::Kind::input}};
+        !std::all_of(given.begin(), given.end(), region::is_finite)) {
+        return {.contours = given, .unresolved = OffsetFault{OffsetFault::Kind::input}};
     }
-    if (request.distance_mm == 0) return {.contours = {region.begin(), region.end()}};
-    const RegionResult first = cleaned(offset_curves(region, request),
+    if (request.distance_mm == 0) return {.contours = given};
+    if (auto result = trimmed(region, request)) return std::move(*result);
+    const RegionResult first = cleaned(offset_curves(region.contours, request),
                                        region_share * request.allowed_mm, request.allowed_mm);
     return settled(first, region, request);
+}
+
+OffsetResult offset(Region region, const OffsetRequest& request) {
+    return offset(BoundedRegion(region), request);
 }
 
 }  // namespace lyr

@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "kernel/region/region.h"
+#include "kernel/toolpath/boundary.h"
 
 namespace lyr {
 
@@ -60,5 +61,8 @@ struct OffsetResult {
 };
 
 OffsetResult offset(Region region, const OffsetRequest& request);
+
+// The same; for several offsets of one region, whose boundary is taken apart once.
+OffsetResult offset(const BoundedRegion& region, const OffsetRequest& request);
 
 }  // namespace lyr

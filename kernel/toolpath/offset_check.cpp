@@ -12,6 +12,7 @@
 #include "kernel/geometry/tolerance.h"
 #include "kernel/toolpath/boundary.h"
 #include "kernel/toolpath/offset_curve.h"
+#include "kernel/toolpath/strip_area.h"
 
 namespace lyr {
 namespace {
@@ -42,17 +43,17 @@ Vector2 right_of(const Vector2& direction) {
 
 class Check {
 public:
-    Check(Region result, Region region, const OffsetRequest& request)
+    Check(const BoundedRegion& result, const BoundedRegion& region, const OffsetRequest& request)
         : request_(request),
           outwards_(request.distance_mm > 0),
           distance_mm_(std::abs(request.distance_mm)),
           mitred_mm_(request.corner == Corner::mitre ? request.mitre_limit * distance_mm_
                                                      : distance_mm_),
           slack_mm_(request.allowed_mm + resolution_mm),
-          source_contours_(region),
-          contours_(result),
-          source_(region),
-          result_(result) {}
+          source_contours_(region.contours),
+          contours_(result.contours),
+          source_(region.boundary),
+          result_(result.boundary) {}
 
     std::optional<OffsetFault> fault() const {
         if (auto found = wrong_distance()) return found;
@@ -75,9 +76,6 @@ private:
     std::optional<bool> has_material_left(std::size_t index, const Point2& point,
                                           const Vector2& tangent) const;
     Fault wrong_side() const;
-    double covered_beside(const BoundaryPiece& piece) const;
-    double covered_around(const BoundaryPiece& before, const BoundaryPiece& after) const;
-    double covered_mm2() const;
     Fault wrong_area() const;
     bool may_be_mitred(const Point2& point) const;
     Fault missing_beside(const Point2& place, const Vector2& towards,
@@ -89,7 +87,7 @@ private:
     bool outwards_;
     double distance_mm_, mitred_mm_, slack_mm_;
     Region source_contours_, contours_;
-    Boundary source_, result_;
+    const Boundary &source_, &result_;
 };
 
 Check::Fault Check::wrong_distance_at(const Point2& point) const {
@@ -144,34 +142,6 @@ Check::Fault Check::wrong_side() const {
     return std::nullopt;
 }
 
-double Check::covered_beside(const BoundaryPiece& piece) const {
-    const double turned = outwards_ ? piece.curvature_per_mm : -piece.curvature_per_mm;
-    // Up to the centre of an arc that turns towards the offset.
-    const double depth_mm = std::min(distance_mm_, turned < 0 ? -1 / turned : distance_mm_);
-    return piece.length_mm * depth_mm * (1 + turned * depth_mm / 2);
-}
-
-double Check::covered_around(const BoundaryPiece& before, const BoundaryPiece& after) const {
-    const Vector2 &from = before.end_tangent, &to = after.start_tangent;
-    double turn = std::atan2(cross(from, to), from.dot(to));
-    // A cusp may be taken for either.
-    const bool is_cusp = std::abs(turn) > pi - cusp_rad;
-    if (!is_cusp && (turn > 0) != outwards_) return 0;
-    turn = is_cusp ? pi + cusp_rad : std::abs(turn);
-    const bool mitred =
-        mitred_mm_ * std::cos(turn / 2) >= distance_mm_ && turn < pi && mitred_mm_ > distance_mm_;
-    return distance_mm_ * distance_mm_ * (mitred ? std::tan(turn / 2) : turn / 2);
-}
-
-double Check::covered_mm2() const {
-    double covered = 0;
-    for_neighbours(source_.pieces(), [&](const BoundaryPiece& before, const BoundaryPiece& piece) {
-        covered += covered_beside(piece);
-        if (!piece.is_circle) covered += covered_around(before, piece);
-    });
-    return covered;
-}
-
 Check::Fault Check::wrong_area() const {
     double length = 0;
     for (const BoundaryPiece& piece : source_.pieces()) length += piece.length_mm;
@@ -179,7 +149,7 @@ Check::Fault Check::wrong_area() const {
     const double slack_mm2 = slack_mm_ * length;
     const double area = area_mm2(contours_), source = std::max(0.0, area_mm2(source_contours_));
     const double disc = std::sqrt(pi) * distance_mm_, root = std::sqrt(source);
-    const double covered = covered_mm2();
+    const double covered = strip_mm2(source_, request_.distance_mm, mitred_mm_);
     const double sum = source > 0 ? (root + disc) * (root + disc) : 0;
     const double least = outwards_ ? sum : source - covered;
     const double inner = std::max(0.0, root - disc);
@@ -262,7 +232,8 @@ Check::Fault Check::missing() const {
 
 }  // namespace
 
-std::optional<OffsetFault> fault_of(Region result, Region region, const OffsetRequest& request) {
+std::optional<OffsetFault> fault_of(const BoundedRegion& result, const BoundedRegion& region,
+                                    const OffsetRequest& request) {
     return Check(result, region, request).fault();
 }
 

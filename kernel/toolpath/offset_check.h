@@ -19,9 +19,11 @@
 
 namespace lyr {
 
-std::optional<OffsetFault> fault_of(Region result, Region region, const OffsetRequest& request);
+std::optional<OffsetFault> fault_of(const BoundedRegion& result, const BoundedRegion& region,
+                                    const OffsetRequest& request);
 
 // What offset() makes of what its first method found: that, if nothing is wrong with it, else what the second finds.
-OffsetResult settled(const RegionResult& first, Region region, const OffsetRequest& request);
+OffsetResult settled(const RegionResult& first, const BoundedRegion& region,
+                     const OffsetRequest& request);
 
 }  // namespace lyr

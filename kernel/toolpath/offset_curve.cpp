@@ -30,6 +30,10 @@ struct Side {
     Point2 parallel_start, parallel_end;  // at the distance beside the segment's ends
     double sagitta_mm;                    // of the parallel
     std::optional<Point2> centre{};       // if there is no parallel
+
+    bool follows_gap = false;  // the side before it has been left out
+
+    Segment parallel() const { return {parallel_end, sagitta_mm}; }
 };
 
 Side side_of(const Point2& start, const Segment& segment, double distance_mm) {
@@ -68,11 +72,42 @@ std::vector<Side> sides_of(const Path& path, double distance_mm) {
     return sides;
 }
 
+// Where two parallels cross, along each from its middle; none where they do not between their ends.
+struct Crossing {
+    Point2 point;
+    double before_mm, after_mm;
+};
+
+std::optional<Crossing> crossing_of(const region::Curve& before, const region::Curve& after) {
+    const region::Meetings found = region::meetings(before, after);
+    std::optional<Crossing> last;
+    for (int i = 0; i < found.count; ++i) {
+        const Point2& point = found.points[static_cast<std::size_t>(i)];
+        const Crossing here{point, region::along_mm(before, point), region::along_mm(after, point)};
+        const bool is_between = std::abs(here.before_mm) <= before.half_mm &&
+                                std::abs(here.after_mm) <= after.half_mm &&
+                                std::abs(region::across_mm(before, point)) <= resolution_mm &&
+                                std::abs(region::across_mm(after, point)) <= resolution_mm;
+        // The one that is nearer to the corner.
+        if (is_between && (!last || here.before_mm > last->before_mm)) last = here;
+    }
+    return last;
+}
+
+// What is left of a parallel, along it from its middle.
+struct Rest {
+    region::Curve parallel;
+    double from_mm, to_mm;
+    std::optional<Point2> start{}, end{};  // where it is cut
+};
+
 class CurveBuilder {
 public:
     CurveBuilder(std::vector<Side> sides, const OffsetRequest& request)
         : sides_(std::move(sides)), request_(request), distance_mm_(request.distance_mm) {}
 
+    // False: a parallel is used up, or two do not cross.
+    bool trim();
     std::optional<Contour> result();
 
 private:
@@ -85,6 +120,11 @@ private:
     bool is_mitred(std::size_t i) const {
         return request_.corner == Corner::mitre && joint_at(i) == Joint::mitre;
     }
+    static bool has_parallel(const Side& side) {
+        return !side.centre && (side.parallel_end - side.parallel_start).norm() > resolution_mm;
+    }
+    void leave_out(std::size_t i);
+    std::optional<std::size_t> cut(std::vector<Rest>& rests) const;
     Point2 mitre_at(std::size_t i) const;
     void line_to(const Point2& point);
     void segment_to(const Segment& segment);
@@ -95,6 +135,7 @@ private:
     std::vector<Side> sides_;
     const OffsetRequest& request_;
     double distance_mm_;
+    double left_out_mm_ = 0;  // at most, between sides that are neighbours now
     Path path_;
     Point2 at_;
 };
@@ -167,6 +208,60 @@ Point2 CurveBuilder::start() const {
     return sides_[0].is_line() && is_mitred(last) ? mitre_at(last) : sides_[0].parallel_start;
 }
 
+void CurveBuilder::leave_out(std::size_t i) {
+    left_out_mm_ = std::max(left_out_mm_, (sides_[i].end - sides_[before(i)].end).norm());
+    sides_[(i + 1) % sides_.size()].follows_gap = true;
+    sides_.erase(sides_.begin() + static_cast<std::ptrdiff_t>(i));
+}
+
+bool CurveBuilder::trim() {
+    // Sides whose parallels are used up are left out; between them and the next ones left out no more than this.
+    const double longest_gap_mm = 2 * std::abs(distance_mm_);
+    for (std::size_t i = sides_.size(); i-- > 0;)
+        if (!has_parallel(sides_[i])) leave_out(i);
+    std::vector<Rest> rests;
+    for (;;) {
+        if (sides_.size() < 2 || left_out_mm_ > longest_gap_mm) return false;
+        const std::optional<std::size_t> used_up = cut(rests);
+        if (!used_up) break;
+        leave_out(*used_up);
+    }
+    for (std::size_t i = 0; i < sides_.size(); ++i) {
+        Side& side = sides_[i];
+        const Rest& rest = rests[i];
+        if (rest.start) side.parallel_start = *rest.start;
+        if (rest.end) side.parallel_end = *rest.end;
+        const double sweep = rest.parallel.curvature_per_mm * (rest.to_mm - rest.from_mm);
+        if ((rest.start || rest.end) && sweep != 0)
+            side.sagitta_mm =
+                arc_with_sweep(side.parallel_start, side.parallel_end, sweep).sagitta_mm;
+    }
+    return true;
+}
+
+// Cuts parallels where they cross the next. The first side of which nothing is left, or the shorter one of two that do not
+// cross.
+std::optional<std::size_t> CurveBuilder::cut(std::vector<Rest>& rests) const {
+    rests.clear();
+    for (const Side& side : sides_) {
+        const region::Curve parallel = region::curve_of(side.parallel_start, side.parallel());
+        rests.push_back({parallel, -parallel.half_mm, parallel.half_mm});
+    }
+    for (std::size_t i = 0; i < sides_.size(); ++i) {
+        if (!after(i).follows_gap && joint_at(i) != Joint::crossing) continue;
+        Rest &one = rests[i], &other = rests[(i + 1) % rests.size()];
+        const auto crossing = crossing_of(one.parallel, other.parallel);
+        if (!crossing)
+            return one.parallel.half_mm < other.parallel.half_mm ? i : (i + 1) % rests.size();
+        one.end = other.start = crossing->point;
+        one.to_mm = crossing->before_mm;
+        other.from_mm = crossing->after_mm;
+    }
+    for (std::size_t i = 0; i < rests.size(); ++i)
+        if (!(rests[i].to_mm - rests[i].from_mm > resolution_mm)) return i;
+    return std::nullopt;
+}
+
 std::optional<Contour> CurveBuilder::result() {
     if (sides_.empty()) return std::nullopt;
     at_ = path_.start = start();
@@ -188,6 +283,22 @@ std::optional<Contour> circle_beside(const FullCircle& circle, double distance_m
 }
 
 }  // namespace
+
+std::optional<std::vector<Contour>> trimmed_curves(Region region, const OffsetRequest& request) {
+    std::vector<Contour> curves;
+    for (const Contour& contour : region) {
+        std::optional<Contour> curve;
+        if (const auto* circle = std::get_if<FullCircle>(&contour)) {
+            curve = circle_beside(*circle, request.distance_mm);
+        } else {
+            CurveBuilder builder(sides_of(std::get<Path>(contour), request.distance_mm), request);
+            if (!builder.trim()) return std::nullopt;
+            curve = builder.result();
+        }
+        if (curve) curves.push_back(std::move(*curve));
+    }
+    return curves;
+}
 
 std::vector<Contour> offset_curves(Region region, const OffsetRequest& request) {
     std::vector<Contour> curves;

@@ -13,6 +13,7 @@
 
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "kernel/toolpath/offset.h"
@@ -24,5 +25,9 @@ namespace lyr {
 inline constexpr double cusp_rad = 1e-3;
 
 std::vector<Contour> offset_curves(Region region, const OffsetRequest& request);
+
+// The same curves with each corner's loop cut off where the parallels beside it cross: as long as nothing else crosses,
+// the offset's boundary as it is. None if a parallel is used up, or two that should cross do not.
+std::optional<std::vector<Contour>> trimmed_curves(Region region, const OffsetRequest& request);
 
 }  // namespace lyr

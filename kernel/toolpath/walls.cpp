@@ -1,12 +1,16 @@
 // As long as a boundary that moves inwards loses no edge and meets no other part of itself, its length changes evenly
 // with the distance; so the area between two distances is their difference times the mean of the lengths. Where it is
-// not, something is narrow: then, and only then, each wall is compared with what is wide enough for it.
+// not, a wall whose boundary keeps clear of itself and which reaches all that lies outside it has lost but edges. Only
+// the others are compared with what is wide enough for them.
 
 #include "kernel/toolpath/walls.h"
 
 #include <cmath>
+#include <optional>
 
+#include "kernel/toolpath/clearance.h"
 #include "kernel/toolpath/infill.h"
+#include "kernel/toolpath/strip_area.h"
 
 namespace lyr {
 namespace {
@@ -32,20 +36,48 @@ public:
           spacing_mm_(line_spacing_mm(request.width_mm, request.overlap * request.height_mm)) {}
 
     Walls make() {
-        walls_.inside = base_;
-        if (request_.count == 0) return std::move(walls_);
-        const double last_mm = middle_mm(request_.count - 1);
-        walls_.inside = shrunk(last_mm + spacing_mm_ / 2);
-        const bool is_plain = is_even(base_, walls_.inside, last_mm + spacing_mm_ / 2);
-        for (std::uint32_t depth = 0; depth < request_.count && !base_.empty(); ++depth)
-            is_plain ? add(shrunk(middle_mm(depth)), depth) : add_careful(depth);
-        if (!is_plain) walls_.inside = base_.empty() ? base_ : inside_;
+        inner_.resize(request_.count + 1);
+        for (std::uint32_t depth = 0; depth < request_.count && !base_.empty(); ++depth) {
+            if (!is_whole(depth)) separate_narrow(depth);
+            add(inner(depth), depth);
+        }
+        walls_.inside = inner(request_.count);
         return std::move(walls_);
     }
 
 private:
+    // From the outline: of a wall, or after the last one of what it leaves.
     double middle_mm(std::uint32_t depth) const {
-        return request_.width_mm / 2 + depth * spacing_mm_;
+        const double middle = request_.width_mm / 2 + depth * spacing_mm_;
+        if (depth < request_.count) return middle;
+        return depth == 0 ? 0 : middle - spacing_mm_ / 2;
+    }
+
+    // What lies that deep, made when it is asked for. Stays where it is.
+    const std::vector<Contour>& inner(std::uint32_t depth) {
+        std::optional<std::vector<Contour>>& found = inner_[depth];
+        if (!found) found = shrunk(middle_mm(depth));
+        return *found;
+    }
+
+    // From the wall's middle to the flank that it has in common with the one before, or to the outline.
+    double outwards_mm(std::uint32_t depth) const {
+        return depth == 0 ? request_.width_mm / 2 : spacing_mm_ / 2;
+    }
+
+    // What the walls before leave.
+    std::vector<Contour> outer(std::uint32_t depth) {
+        return depth == 0 ? base_ : shrunk(middle_mm(depth) - outwards_mm(depth));
+    }
+
+    // Whether the wall needs no narrow parts taken off it, or none are to be.
+    bool is_whole(std::uint32_t depth) {
+        if (!(depth == 0 ? request_.thin_walls : request_.gap_fill)) return true;
+        const std::vector<Contour>& before = depth == 0 ? base_ : inner(depth - 1);
+        const double before_mm = depth == 0 ? 0 : middle_mm(depth - 1);
+        return (is_even(before, inner(depth), middle_mm(depth) - before_mm) &&
+                is_even(inner(depth), inner(depth + 1), middle_mm(depth + 1) - middle_mm(depth))) ||
+               is_roomy(depth);
     }
 
     // Whether the boundaries at two distances are what an even change leads to from one to the other.
@@ -55,8 +87,19 @@ private:
         return std::abs(between - expected) <= unseen_mm * unseen_mm;
     }
 
-    std::vector<Contour> offset_by(Region region, double distance_mm, Corner corner) {
-        if (region.empty()) return {};
+    // Whether the wall's sides are not near each other, but for less than is looked into, and together reach all that is
+    // outside of it.
+    bool is_roomy(std::uint32_t depth) {
+        const Boundary boundary(inner(depth));
+        const double flank_mm = outwards_mm(depth);
+        const double reached_mm2 =
+            area_mm2(inner(depth)) + strip_mm2(boundary, flank_mm, mitre_limit * flank_mm);
+        return area_mm2(outer(depth)) - reached_mm2 <= unseen_mm * unseen_mm &&
+               narrow_mm2(boundary, least_space_share * spacing_mm_) <= unseen_mm * unseen_mm;
+    }
+
+    std::vector<Contour> offset_by(const BoundedRegion& region, double distance_mm, Corner corner) {
+        if (region.contours.empty()) return {};
         OffsetResult result = offset(region, {.distance_mm = distance_mm,
                                               .allowed_mm = request_.allowed_mm,
                                               .corner = corner,
@@ -68,7 +111,17 @@ private:
 
     // By a distance from the outline.
     std::vector<Contour> shrunk(double distance_mm) {
-        return offset_by(base_, base_mm_ - distance_mm, request_.corner);
+        if (distance_mm == base_mm_) return base_;
+        if (!bounded_) bounded_.emplace(base_);
+        return offset_by(*bounded_, base_mm_ - distance_mm, request_.corner);
+    }
+
+    // Walls from here on are offsets of this one.
+    void set_base(std::vector<Contour> wall, std::uint32_t depth) {
+        base_ = std::move(wall);
+        base_mm_ = middle_mm(depth);
+        bounded_.reset();
+        std::fill(inner_.begin() + depth, inner_.end(), std::nullopt);
     }
 
     std::vector<Contour> operated(Region a, Region b, Operation operation) {
@@ -84,31 +137,18 @@ private:
         }
     }
 
-    // One wall, without its narrow parts, and what is within it.
-    void add_careful(std::uint32_t depth) {
-        const double middle = middle_mm(depth);
-        const double outer_mm = depth == 0 ? 0 : middle - spacing_mm_ / 2;
-        const std::vector<Contour> outer = depth == 0 ? base_ : inside_;
-        std::vector<Contour> wall = shrunk(middle);
-        // make() has found it already, unless a wall was cut since.
-        const bool is_known = depth + 1 == request_.count && base_mm_ == 0;
-        std::vector<Contour> inner = is_known ? walls_.inside : shrunk(middle + spacing_mm_ / 2);
-        const bool is_wanted = depth == 0 ? request_.thin_walls : request_.gap_fill;
-        if (is_wanted && !is_even(outer, inner, middle + spacing_mm_ / 2 - outer_mm)) {
-            std::vector<Contour> wide = wide_parts(wall, middle);
-            const bool is_cut = area_mm2(wall) - area_mm2(wide) > unseen_mm * unseen_mm;
-            if (is_cut) wall = std::move(wide);
-            const std::vector<Contour> covered = offset_by(wall, middle - outer_mm, Corner::mitre);
-            // Else only edges have vanished.
-            if (is_cut || area_mm2(outer) - area_mm2(covered) > unseen_mm * unseen_mm) {
-                base_ = wall;
-                base_mm_ = middle;
-                inner = shrunk(middle + spacing_mm_ / 2);
-                add_narrow(outer, covered, depth);
-            }
-        }
-        add(wall, depth);
-        inside_ = std::move(inner);
+    // Takes off a wall where its opposite sides are too near each other, and lists what it does not cover.
+    void separate_narrow(std::uint32_t depth) {
+        const std::vector<Contour> outside = outer(depth);
+        std::vector<Contour> wall = inner(depth), wide = wide_parts(wall, middle_mm(depth));
+        const bool is_cut = area_mm2(wall) - area_mm2(wide) > unseen_mm * unseen_mm;
+        if (is_cut) wall = std::move(wide);
+        const std::vector<Contour> covered =
+            offset_by(BoundedRegion(wall), outwards_mm(depth), Corner::mitre);
+        // Else only edges have vanished.
+        if (!is_cut && area_mm2(outside) - area_mm2(covered) <= unseen_mm * unseen_mm) return;
+        add_narrow(outside, covered, depth);
+        set_base(std::move(wall), depth);
     }
 
     // The parts of a wall whose opposite sides are far enough from each other.
@@ -116,7 +156,8 @@ private:
         const double half_mm = least_space_share * spacing_mm_ / 2;
         const std::vector<Contour> kernel = shrunk(middle_mm + half_mm);
         const double margin_mm = cut_margin_share * request_.width_mm;
-        const std::vector<Contour> wide = offset_by(kernel, half_mm + margin_mm, Corner::mitre);
+        const std::vector<Contour> wide =
+            offset_by(BoundedRegion(kernel), half_mm + margin_mm, Corner::mitre);
         if (wide.empty()) return {};
         return operated(wall, wide, Operation::intersect);
     }
@@ -127,8 +168,8 @@ private:
                                               ? std::vector<Contour>(outer.begin(), outer.end())
                                               : operated(outer, covered, Operation::subtract);
         const double half_mm = request_.min_width_mm / 2;
-        const std::vector<Contour> fit = offset_by(rest, -half_mm, Corner::round);
-        const std::vector<Contour> opened = offset_by(fit, half_mm, Corner::mitre);
+        const std::vector<Contour> fit = offset_by(BoundedRegion(rest), -half_mm, Corner::round);
+        const std::vector<Contour> opened = offset_by(BoundedRegion(fit), half_mm, Corner::mitre);
         const std::vector<Contour> narrow =
             opened.empty() ? opened : operated(opened, rest, Operation::intersect);
         walls_.left_out_mm2 += area_mm2(rest) - area_mm2(narrow);
@@ -137,12 +178,12 @@ private:
     }
 
     WallRequest request_;
-    std::vector<Contour>
-        base_;            // what walls are offsets of: the outline, or the last wall that was cut
-    double base_mm_ = 0;  // its distance from the outline
+    // What walls are offsets of: the outline, or the last wall that was cut, and its distance from the outline.
+    std::vector<Contour> base_;
+    double base_mm_ = 0;
+    std::optional<BoundedRegion> bounded_;
     double spacing_mm_;
-    std::vector<Contour>
-        inside_;  // what the last wall leaves, where walls are looked at one by one
+    std::vector<std::optional<std::vector<Contour>>> inner_;  // by depth
     Walls walls_;
 };
 

@@ -33,7 +33,7 @@ Case random_case(Random& random, Corner corner = Corner::round) {
 }
 
 std::optional<OffsetFault> fault_of(const Case& made, const Contours& result) {
-    return lyr::fault_of(result, made.region, made.request);
+    return lyr::fault_of(BoundedRegion(result), BoundedRegion(made.region), made.request);
 }
 
 double width_mm(const Contour& contour) {
@@ -137,7 +137,8 @@ TEST_CASE("offset 5: what the first method makes wrong is made again by the seco
         CAPTURE(i);
         CAPTURE(made.request.distance_mm);
         const Contours wrong = offset(made.region, nearer).contours;
-        const OffsetResult again = settled(as_found(wrong), made.region, made.request);
+        const OffsetResult again =
+            settled(as_found(wrong), BoundedRegion(made.region), made.request);
         CHECK(again.second_method);
         CHECK(!again.unresolved);
         CHECK(std::abs(total_area(again.contours) - total_area(made.result)) <=
