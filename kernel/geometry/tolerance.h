@@ -2,9 +2,9 @@
 //
 // The user's tolerance bounds the distance between the printed contour and the exact section. It is split:
 //   trace     an eighth        points of a traced curve off the exact one, arcs joined into one
-//   fit       half             fitted arcs off the curve's points
+//   fit       31 parts of 64   fitted arcs off the curve's points
 //   unite     a sixteenth      contours moved to each other where solids meet
-//   quantise  five sixteenths  coordinates rounded to the file's quantum
+//   quantise  21 parts of 64   coordinates rounded to the file's quantum
 // Exact lines and arcs have no fit error; their quantisation may use that share too.
 
 #pragma once
@@ -15,9 +15,9 @@ struct Tolerance {
     double total_mm = 0.005;
 
     constexpr double trace_mm() const { return total_mm / 8; }
-    constexpr double fit_mm() const { return total_mm / 2; }
+    constexpr double fit_mm() const { return total_mm * 31 / 64; }
     constexpr double unite_mm() const { return total_mm / 16; }
-    constexpr double quantise_mm() const { return total_mm * 5 / 16; }
+    constexpr double quantise_mm() const { return total_mm * 21 / 64; }
 };
 
 // Heights and points closer than this are one: the resolution of the model's own coordinates. STEP files

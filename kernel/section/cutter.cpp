@@ -233,15 +233,18 @@ HeightRange Cutter::height_range() const {
             if (containment(FaceId{f}).holds_apex()) extend(apex_of(*cone).z());
         }
     }
-    // Free-form faces last: those whose hulls stay within need not be looked into.
+    // Free-form faces last, those first whose hulls reach out farthest: where hulls stay within, faces need not be looked into.
+    std::vector<std::pair<double, const FreeformFace*>> beyond;
     for (const auto& freeform : freeform_) {
         if (!freeform) continue;
         const HeightRange hull = freeform->hull();
-        if (range.bottom_mm <= hull.bottom_mm && hull.top_mm <= range.top_mm) continue;
-        const HeightRange heights = freeform->heights();
-        extend(heights.bottom_mm);
-        extend(heights.top_mm);
+        const double excess =
+            std::max(hull.top_mm - range.top_mm, range.bottom_mm - hull.bottom_mm);
+        if (excess > 0) beyond.emplace_back(excess, freeform.get());
     }
+    std::stable_sort(beyond.begin(), beyond.end(),
+                     [](const auto& a, const auto& b) { return a.first > b.first; });
+    for (const auto& [excess, freeform] : beyond) range = freeform->extended(range);
     return range;
 }
 

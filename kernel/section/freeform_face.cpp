@@ -32,12 +32,13 @@ const Containment& FreeformFace::containment() const {
 }
 
 HeightRange FreeformFace::heights() const {
-    return heights_.get([&] { return heights_of_face(); });
+    return heights_.get([&] { return extended(loops_); });
 }
 
 // A highest point inside the face is a vertex of the mesh, to flat_cell_mm, with no higher neighbour.
-HeightRange FreeformFace::heights_of_face() const {
-    if (loops_.bottom_mm <= hull_.bottom_mm && hull_.top_mm <= loops_.top_mm) return loops_;
+HeightRange FreeformFace::extended(HeightRange range) const {
+    range = {std::min(range.bottom_mm, loops_.bottom_mm), std::max(range.top_mm, loops_.top_mm)};
+    if (range.bottom_mm <= hull_.bottom_mm && hull_.top_mm <= range.top_mm) return range;
     const std::vector<MeshVertex>& vertices = mesh().vertices;
     std::vector<bool> has_higher(vertices.size(), false), has_lower(vertices.size(), false);
     std::vector<bool> used(vertices.size(), false);  // the doubles at a seam are not
@@ -49,7 +50,6 @@ HeightRange FreeformFace::heights_of_face() const {
         has_higher[piece.to] = has_higher[piece.to] || rise < 0;
         has_lower[piece.to] = has_lower[piece.to] || rise > 0;
     }
-    HeightRange range = loops_;
     for (std::size_t v = 0; v < vertices.size(); ++v) {
         const double z = vertices[v].z_mm;
         const bool beyond =

@@ -30,9 +30,10 @@ public:
     // The heights of the face: those of its edges and of the highest and lowest points inside.
     HeightRange heights() const;
 
-private:
-    HeightRange heights_of_face() const;
+    // A range, and what of the face is beyond it: found faster than all of its heights.
+    HeightRange extended(HeightRange range) const;
 
+private:
     const Model& model_;
     FaceId face_;
     const std::vector<double>& vertex_level_mm_;
