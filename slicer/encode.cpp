@@ -7,6 +7,7 @@
 
 #include "kernel/toolpath/layer_order.h"
 #include "slicer/styles.h"
+#include "slicer/wipe.h"
 
 namespace lyr::slicer {
 namespace {
@@ -22,12 +23,8 @@ constexpr double quanta_off = 1.3;
 Strand reversed(Strand strand) {
     auto* path = std::get_if<Path>(&strand.path);
     if (!path) return strand;
-    Path back{path->segments.back().end, {}};
-    for (std::size_t i = path->segments.size(); i-- > 0;)
-        back.segments.push_back(
-            {i > 0 ? path->segments[i - 1].end : path->start, -path->segments[i].sagitta_mm});
     std::reverse(strand.widths_mm.begin(), strand.widths_mm.end());
-    strand.path = std::move(back);
+    strand.path = slicer::reversed(*path);
     return strand;
 }
 
@@ -59,7 +56,7 @@ public:
             const Strand& strand = std::get<Strand>(piece.way);
             travel({.crosses = true}, start_of(strand.path));
             begin(piece_style(piece));
-            append(strand);
+            append(strand, start_of(strand.path));
             head_ = start_of(strand.path);
         }
         for (const PrintMove& move : moves_) {
@@ -69,7 +66,7 @@ public:
                 append_piece(move);
             }
         }
-        if (retracts()) encoder_.retract();
+        if (retracts()) draw_back();
         return encoder_.finish();
     }
 
@@ -181,6 +178,8 @@ private:
 
     bool retracts() const { return profile_.travel.retract_length_mm > 0; }
 
+    bool wipes() const { return retracts() && profile_.travel.wipe_mm > 0; }
+
     void begin(const format::PathStyle& style) {
         if (style == style_) return;
         encoder_.begin_path(style);
@@ -196,12 +195,9 @@ private:
         const bool draws_back = retracts() && !retracted_ && (way.crosses || !detours_) &&
                                 length >= profile_.travel.retract_min_travel_mm;
         const double hop_mm = draws_back ? profile_.travel.z_hop_mm : 0;
-        if (draws_back) {
-            encoder_.retract();
-            retracted_ = true;
-        }
+        const Point2 lift = draws_back ? draw_back().value_or(from) : from;
         const double z_mm = layer_.span.top_mm;
-        if (hop_mm > 0) encoder_.travel_to(from.x(), from.y(), z_mm + hop_mm);
+        if (hop_mm > 0) encoder_.travel_to(lift.x(), lift.y(), z_mm + hop_mm);
         for (const Point2& via : way.via) encoder_.travel_to(via.x(), via.y());
         encoder_.travel_to(to.x(), to.y());
         if (hop_mm > 0) encoder_.travel_to(to.x(), to.y(), z_mm);
@@ -209,11 +205,25 @@ private:
         retracted_ = false;
     }
 
+    // The head's place, if a wipe has moved it.
+    std::optional<Point2> draw_back() {
+        retracted_ = true;
+        const Path wipe = std::move(wipe_);
+        wipe_.segments.clear();
+        if (!wipe.segments.empty()) {
+            const double before_mm = depth_before_wipe_mm(wipe, profile_);
+            if (before_mm > 0) encoder_.retract_to(before_mm);
+            encoder_.wipe(wipe_pieces(wipe), profile_.travel.retract_length_mm);
+        }
+        encoder_.retract();
+        return wipe.segments.empty() ? std::nullopt : std::optional(wipe.segments.back().end);
+    }
+
     void append_wall(const PrintMove& move) {
         const Strand wall = started_at(layer_.outlined.walls.strands[move.index], move.seam);
         travel(move.travel, move.seam.point);
         begin(wall_style(move.index));
-        append(wall);
+        append(wall, move.seam.point);
         head_ = move.seam.point;
     }
 
@@ -227,14 +237,15 @@ private:
             append(move.reversed ? lyr::reversed(*run) : *run);
         } else {
             const Strand& strand = std::get<Strand>(piece.way);
-            append(move.reversed ? reversed(strand) : strand);
+            append(move.reversed ? reversed(strand) : strand, move.seam.point);
         }
         if (bridges) encoder_.fan(0, fan_);
         const OpenPiece ends = ends_of(piece);
         head_ = move.reversed ? ends.first : ends.last;
     }
 
-    void append(const Strand& strand) {
+    void append(const Strand& strand, const Point2& start) {
+        if (wipes()) wipe_ = wipe_along(strand, start, profile_.travel.wipe_mm);
         if (const auto* circle = std::get_if<FullCircle>(&strand.path)) {
             encoder_.circle(circle->centre.x(), circle->centre.y(), circle->counter_clockwise);
             return;
@@ -268,6 +279,7 @@ private:
     }
 
     void append(const HatchRun& run) {
+        if (wipes()) wipe_ = wipe_along(run, profile_.travel.wipe_mm);
         std::vector<format::HatchRow> rows;
         std::vector<format::HatchInterval> intervals;
         for (const HatchRow& row : run.rows) {
@@ -291,6 +303,7 @@ private:
     double fan_ = 0;
     bool retracted_ = false;
     std::optional<Point2> head_;
+    Path wipe_{Point2::Zero(), {}};  // along which the next retraction goes
     format::PathStyle style_{};
     format::LayerEncoder encoder_;
 };

@@ -61,7 +61,6 @@ void warn_of_missing(const profile::Profile& profile, Diagnostics& diagnostics) 
     warn(profile.support.kind != profile::SupportKind::none, "support.kind");
     warn(profile.adhesion.kind == profile::AdhesionKind::raft, "adhesion.kind = raft");
     warn(profile.layer.adaptive, "layer.adaptive");
-    warn(profile.travel.wipe_mm > 0, "travel.wipe");
     warn(profile.plate.copies > 1, "plate.copies");
     warn(profile.plate.sequential, "plate.sequential");
 }

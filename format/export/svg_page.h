@@ -30,7 +30,7 @@ struct PageContent {
     std::string drawing;  // SVG elements, y already pointing down
 };
 
-inline constexpr std::string_view travel_color = "#3a3f44";
+inline constexpr std::string_view travel_color = "#3a3f44", wipe_color = "#c0392b";
 
 // "#rrggbb" towards black.
 std::string darker(std::string_view color);
