@@ -242,7 +242,7 @@ void add_heat(std::vector<Key>& keys) {
 void add_plate(std::vector<Key>& keys) {
     Section(keys, "plate", &Profile::plate)
         .count("copies", &Plate::copies, {1, 10'000}, "How many of the part")
-        .number("spacing", &Plate::spacing_mm, mm, {0, 1000}, "Between copies")
+        .number("spacing", &Plate::spacing_mm, mm, {0, 1000}, "Between copies, or their brims")
         .flag("sequential", &Plate::sequential, "One copy after the other, not layer by layer")
         .point("at", &Plate::at_mm, mm, bed_mm, "Where the first copy's lower left corner lies")
         .point("size", &Plate::size_mm, mm, {0, bed_mm.high},
