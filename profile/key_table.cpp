@@ -244,6 +244,13 @@ void add_plate(std::vector<Key>& keys) {
         .count("copies", &Plate::copies, {1, 10'000}, "How many of the part")
         .number("spacing", &Plate::spacing_mm, mm, {0, 1000}, "Between copies, or their brims")
         .flag("sequential", &Plate::sequential, "One copy after the other, not layer by layer")
+        .number(
+            "clearance_radius", &Plate::clearance_radius_mm, mm, {0, 1000},
+            "Sequential: how far the head reaches around the nozzle; no copy is nearer to another")
+        .number(
+            "clearance_height", &Plate::clearance_height_mm, mm, {0, 10'000},
+            "Sequential: height of the gantry over the nozzle; higher copies lie one behind the "
+            "other")
         .point("at", &Plate::at_mm, mm, bed_mm, "Where the first copy's lower left corner lies")
         .point("size", &Plate::size_mm, mm, {0, bed_mm.high},
                "Size of the bed, on which all copies must lie; [0, 0]: not stated");

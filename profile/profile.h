@@ -190,7 +190,10 @@ struct Fan {
 struct Plate {
     std::uint32_t copies = 1;
     double spacing_mm = 6;
-    bool sequential = false;          // one part after the other instead of layer by layer
+    bool sequential = false;  // one part after the other instead of layer by layer
+    // Of the head, around the nozzle, and of the gantry, over it.
+    double clearance_radius_mm = 45;
+    double clearance_height_mm = 25;
     std::array<double, 2> at_mm{};    // of the lower left corner of the first part's box
     std::array<double, 2> size_mm{};  // 0, 0: not stated
     bool operator==(const Plate&) const = default;

@@ -50,7 +50,9 @@ public:
     Result<format::EncodedLayer> encode() {
         if (!layer_.skirt.empty()) append_around(layer_.skirt);
         for (const Copy& copy : layer_.copies) append(copy);
-        if (retracts()) draw_back();
+        const auto wiped_to = retracts() ? draw_back() : std::nullopt;
+        const Point2 end = wiped_to.value_or(head_.value_or(corner()));
+        if (layer_.lift_mm > 0) travel_to(end, layer_.span.top_mm + layer_.lift_mm);
         return encoder_.finish();
     }
 

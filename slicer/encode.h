@@ -26,6 +26,7 @@ struct LayerToEncode {
     std::span<const Copy> copies;    // printed one after the other
     std::span<const Piece> skirt{};  // around all of them, printed first
     bool begins_print = false;
+    double lift_mm = 0;  // of the head, when all is done
 };
 
 // The coarsest of 1, 2, 5, 10, ... nm up to 1 um whose rounding stays within its share of the tolerance.

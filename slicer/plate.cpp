@@ -14,6 +14,8 @@ namespace {
 constexpr double largest_plate_mm = 10'000;
 // Pitches are multiples of this, which is a whole number of any quantum.
 constexpr double pitch_step_mm = 0.001;
+// The nozzle passes over finished copies so high above them: over what curls up or hangs from it.
+constexpr double lift_mm = 2;
 // What fits but for the rounding of a box fits.
 constexpr double slack_mm = 1e-6;
 
@@ -32,10 +34,13 @@ public:
     Layout(const Eigen::AlignedBox3d& box, const profile::Profile& profile)
         : plate_(profile.plate),
           corner_(box.min().x(), box.min().y()),
-          size_(box.sizes().x(), box.sizes().y()) {
+          size_(box.sizes().x(), box.sizes().y()),
+          in_sequence_(plate_.sequential && plate_.copies > 1),
+          one_behind_other_(in_sequence_ && box.sizes().z() > plate_.clearance_height_mm) {
         const bool has_brim = profile.adhesion.kind == profile::AdhesionKind::brim;
         const double brim_mm = has_brim ? adhesion_reach_mm(profile) : 0;
         gap_mm_ = plate_.spacing_mm + 2 * brim_mm;
+        if (in_sequence_) gap_mm_ = std::max(gap_mm_, plate_.clearance_radius_mm + brim_mm);
         for (const Eigen::Index axis : {0, 1}) pitch_[axis] = rounded_up_mm(size_[axis] + gap_mm_);
     }
 
@@ -49,6 +54,7 @@ public:
                                      static_cast<double>(i / grid->columns) * pitch_[1]);
         made.order = to_and_fro(*grid);
         made.outline = {around(*grid)};
+        made.lift_mm = in_sequence_ ? lift_mm : 0;
         return made;
     }
 
@@ -67,6 +73,7 @@ private:
             return 1 + static_cast<std::size_t>(more);
         };
         Grid room{along(0), along(1)};
+        if (one_behind_other_) room.columns = std::min<std::size_t>(room.columns, 1);
         return room;
     }
 
@@ -90,11 +97,15 @@ private:
         char text[400];
         std::snprintf(
             text, sizeof text,
-            "%u copies of %.6g x %.6g mm, %.6g mm apart, do not fit on %s of %.6g x %.6g "
+            "%u copies of %.6g x %.6g mm, %.6g mm apart%s, do not fit on %s of %.6g x %.6g "
             "mm from %.6g, %.6g on: at most %zu would (plate.copies, plate.size, plate.at, "
-            "plate.spacing)",
-            plate_.copies, size_[0], size_[1], gap_mm_, is_stated() ? "the plate" : "any plate",
-            end_mm(0), end_mm(1), corner_[0], corner_[1], room.columns * room.rows);
+            "plate.spacing%s)",
+            plate_.copies, size_[0], size_[1], gap_mm_,
+            one_behind_other_ ? " and one behind the other, as they are higher than "
+                                "plate.clearance_height"
+                              : "",
+            is_stated() ? "the plate" : "any plate", end_mm(0), end_mm(1), corner_[0], corner_[1],
+            room.columns * room.rows, in_sequence_ ? ", plate.clearance_radius" : "");
         return {Severity::error, ExitStatus::geometry, text, {}};
     }
 
@@ -138,6 +149,7 @@ private:
     const profile::Plate& plate_;
     Sizes corner_, size_, pitch_;
     double gap_mm_ = 0;
+    bool in_sequence_, one_behind_other_;
 };
 
 }  // namespace
@@ -149,8 +161,9 @@ Result<PlateLayout> lay_out(const Eigen::AlignedBox3d& box, const profile::Profi
 std::string layout_text(const PlateLayout& layout) {
     if (layout.shifts.size() <= 1) return {};
     char text[120];
-    std::snprintf(text, sizeof text, "%zu copies in %s, %.6g mm apart, layer by layer\n",
-                  layout.shifts.size(), counted(layout.rows, "row").c_str(), layout.gap_mm);
+    std::snprintf(text, sizeof text, "%zu copies in %s, %.6g mm apart, %s\n", layout.shifts.size(),
+                  counted(layout.rows, "row").c_str(), layout.gap_mm,
+                  layout.is_sequential() ? "one after the other" : "layer by layer");
     return text;
 }
 

@@ -7,6 +7,10 @@
 //  2. On a plate whose size is stated all boxes lie within it, or the error says how many would. Of the grids that fit,
 //     the one is taken that is next to a square.
 //  3. Layer by layer, each copy follows a neighbour of it, and the next layer goes the same way back.
+//  4. Sequential: boxes are so far apart that the head, which reaches plate.clearance_radius around the nozzle, meets no
+//     finished copy while the nozzle is at work on another one, its brim included. Copies that are higher than
+//     plate.clearance_height lie one behind the other and are printed from the front, so that the gantry never passes
+//     over a finished one.
 
 #pragma once
 
@@ -21,6 +25,9 @@ struct PlateLayout {
     std::vector<Vector2> shifts{};       // from the first copy, by number; in rows from the front
     std::vector<std::uint32_t> order{};  // of copies that are printed layer by layer
     std::vector<Contour> outline{};      // around the boxes of all copies
+    double lift_mm = 0;                  // over a finished copy, to the next one; 0: not sequential
+
+    bool is_sequential() const { return lift_mm > 0; }
 };
 
 // `box`: of the first copy, on its place. Errors (status geometry): 2.

@@ -63,7 +63,6 @@ void warn_of_missing(const profile::Profile& profile, Diagnostics& diagnostics) 
     warn(profile.support.kind != profile::SupportKind::none, "support.kind");
     warn(profile.adhesion.kind == profile::AdhesionKind::raft, "adhesion.kind = raft");
     warn(profile.layer.adaptive, "layer.adaptive");
-    warn(profile.plate.sequential, "plate.sequential");
 }
 
 // Where a plate's size is stated, the part has to lie on it.

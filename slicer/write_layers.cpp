@@ -1,7 +1,9 @@
-// Layers are filled, ordered and encoded on several threads and taken in order.
+// Layers are filled, ordered and encoded on several threads and taken in order. Where copies are printed layer by layer
+// that is one pass; where they are printed one after the other, all layers are filled first and then encoded for each.
 
 #include "slicer/write_layers.h"
 
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -67,8 +69,9 @@ PlannedLayer planned(std::size_t i, const Job& job) {
     return made;
 }
 
+// `lifts`: the head leaves the copy for the next one.
 TimedLayer encoded(std::size_t i, const Job& job, const PlannedLayer& planned,
-                   std::span<const Copy> copies, bool begins_print) {
+                   std::span<const Copy> copies, bool begins_print, bool lifts) {
     TimedLayer made;
     auto bytes = encode_layer({.index = i,
                                .span = job.in.spans[i],
@@ -77,7 +80,8 @@ TimedLayer encoded(std::size_t i, const Job& job, const PlannedLayer& planned,
                                .moves = planned.moves,
                                .copies = copies,
                                .skirt = begins_print ? planned.skirt : std::span<const Piece>(),
-                               .begins_print = begins_print},
+                               .begins_print = begins_print,
+                               .lift_mm = lifts ? job.in.plate.lift_mm : 0},
                               job.in.options, quantum_for(job.in.options.tolerance()));
     if (!bytes) {
         made.error = bytes.error();
@@ -162,7 +166,7 @@ void write_by_layer(const Job& job, Sink& sink, Diagnostics& diagnostics) {
         job.in.layers.size(), thread_count(job.in.options),
         [&](std::size_t i) {
             const PlannedLayer layer = planned(i, job);
-            TimedLayer made = encoded(i, job, layer, i % 2 == 0 ? to : fro, i == 0);
+            TimedLayer made = encoded(i, job, layer, i % 2 == 0 ? to : fro, i == 0, false);
             made.unresolved = layer.fill.unresolved;
             return made;
         },
@@ -172,13 +176,42 @@ void write_by_layer(const Job& job, Sink& sink, Diagnostics& diagnostics) {
         });
 }
 
+// Each copy with all its layers, which are made once.
+void write_in_sequence(const Job& job, Sink& sink, Diagnostics& diagnostics) {
+    std::vector<PlannedLayer> layers;
+    in_order(
+        job.in.layers.size(), thread_count(job.in.options),
+        [&](std::size_t i) { return planned(i, job); },
+        [&](std::size_t i, PlannedLayer made) {
+            warn_of_fill(made.fill.unresolved, i, job, diagnostics);
+            layers.push_back(std::move(made));
+            return true;
+        });
+    std::vector<std::uint32_t> from_front(job.in.plate.shifts.size());
+    std::iota(from_front.begin(), from_front.end(), 0u);
+    const auto copies = copies_of(job.in.plate, from_front);
+    const std::size_t count = copies.size() * layers.size();
+    in_order(
+        count, thread_count(job.in.options),
+        [&](std::size_t n) {
+            const std::size_t copy = n / layers.size(), i = n % layers.size();
+            const bool leaves = i + 1 == layers.size() && n + 1 < count;
+            return encoded(i, job, layers[i], std::span(&copies[copy], 1), n == 0, leaves);
+        },
+        [&](std::size_t n, TimedLayer made) { return sink.take(n, std::move(made), count); });
+}
+
 }  // namespace
 
 Result<Estimate> write_layers(const LayersToWrite& layers, format::Writer& writer,
                               const Progress& progress, Diagnostics& diagnostics) {
     const Job job{layers};
     Sink sink{.timed = TimedWriter(writer, job.estimator), .progress = progress};
-    write_by_layer(job, sink, diagnostics);
+    if (job.in.plate.is_sequential()) {
+        write_in_sequence(job, sink, diagnostics);
+    } else {
+        write_by_layer(job, sink, diagnostics);
+    }
     if (sink.failed) return *sink.failed;
     return sink.timed.estimate();
 }

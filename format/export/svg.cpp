@@ -206,6 +206,12 @@ std::string strokes_text(const Strokes& strokes, const SvgOptions& options, doub
     return out + "</g>\n";
 }
 
+// Of an object, if it has a name, else of the file's source.
+std::string name_of(const Metadata& metadata, std::uint32_t object) {
+    const bool is_named = object > 0 && object <= metadata.objects.size();
+    return is_named ? metadata.objects[object - 1] : metadata.source_name;
+}
+
 PageFrame frame_of(const Reader& reader) {
     const Quantum quantum = reader.header().quantum;
     const Summary& summary = reader.header().summary;
@@ -222,6 +228,7 @@ Result<std::string> layer_svg(Reader& reader, std::uint32_t layer, const SvgOpti
     if (Status sought = reader.seek_layer(layer); !sought) return sought.error();
     Strokes strokes(reader.header().quantum);
     Layer shown;
+    bool of_several = false;
     for (bool begun = false;;) {
         const Result<std::optional<Operation>> next = reader.next();
         if (!next) return next.error();
@@ -231,9 +238,12 @@ Result<std::string> layer_svg(Reader& reader, std::uint32_t layer, const SvgOpti
             begun = true;
             shown = reader.layer();
         }
+        if (const auto* object = std::get_if<Object>(&**next))
+            of_several = of_several || object->object != shown.state.object;
         strokes.add(**next, reader.path());
     }
-    PageContent content{shown.index, reader.header(), shown, {}, {}};
+    const std::string name = name_of(reader.header().metadata, of_several ? 0 : shown.state.object);
+    PageContent content{shown.index, reader.header(), shown, name, {}, {}};
     for (std::size_t i = 0; i < role_count; ++i)
         if (strokes.length_mm()[i] > 0)
             content.legend.push_back({std::string(name_of(static_cast<Role>(i))),

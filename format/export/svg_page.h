@@ -26,6 +26,7 @@ struct PageContent {
     std::uint32_t layer = 0;  // from 0
     const FileHeader& header;
     const Layer& shown;
+    std::string name;  // of what is shown
     std::vector<LegendEntry> legend;
     std::string drawing;  // SVG elements, y already pointing down
 };
