@@ -96,7 +96,8 @@ void measure_file(const std::string& path, const Arguments& arguments, Table& ta
     }
     const auto shares = model ? measured(*model, arguments) : Result<ArcShares>(model.error());
     if (!shares) {
-        std::printf("%s: %s\n", path.c_str(), to_string(shares.error()).c_str());
+        std::printf("not printed: %s: %s\n", std::filesystem::path(path).filename().c_str(),
+                    shares.error().message.c_str());
         ++totals.not_printed;
         return;
     }

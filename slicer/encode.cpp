@@ -212,7 +212,12 @@ private:
         encoder_.travel_to(to.x() + shift_.x(), to.y() + shift_.y(), z_mm);
     }
 
-    // The head's place, if a wipe has moved it.
+    void keep(Path wipe) {
+        wipe_ = std::move(wipe);
+        wipe_shift_ = shift_;
+    }
+
+    // The head's place, if a wipe has moved it. It is along what was printed last, which may be of another copy.
     std::optional<Point2> draw_back() {
         retracted_ = true;
         const Path wipe = std::move(wipe_);
@@ -220,10 +225,11 @@ private:
         if (!wipe.segments.empty()) {
             const double before_mm = depth_before_wipe_mm(wipe, profile_);
             if (before_mm > 0) encoder_.retract_to(before_mm);
-            encoder_.wipe(wipe_pieces(wipe, shift_), profile_.travel.retract_length_mm);
+            encoder_.wipe(wipe_pieces(wipe, wipe_shift_), profile_.travel.retract_length_mm);
         }
         encoder_.retract();
-        return wipe.segments.empty() ? std::nullopt : std::optional(wipe.segments.back().end);
+        if (wipe.segments.empty()) return std::nullopt;
+        return wipe.segments.back().end + wipe_shift_ - shift_;
     }
 
     void append_wall(const PrintMove& move) {
@@ -252,7 +258,7 @@ private:
     }
 
     void append(const Strand& strand, const Point2& start) {
-        if (wipes()) wipe_ = wipe_along(strand, start, profile_.travel.wipe_mm);
+        if (wipes()) keep(wipe_along(strand, start, profile_.travel.wipe_mm));
         if (const auto* circle = std::get_if<FullCircle>(&strand.path)) {
             const Point2 centre = circle->centre + shift_;
             encoder_.circle(centre.x(), centre.y(), circle->counter_clockwise);
@@ -287,7 +293,7 @@ private:
     }
 
     void append(const HatchRun& run) {
-        if (wipes()) wipe_ = wipe_along(run, profile_.travel.wipe_mm);
+        if (wipes()) keep(wipe_along(run, profile_.travel.wipe_mm));
         const double along_mm = run.direction.dot(shift_);
         const double left_mm = cross(run.direction, shift_);
         std::vector<format::HatchRow> rows;
@@ -317,6 +323,7 @@ private:
         Vector2::Zero();  // of the copy that is printed; all points are those of the first one
     std::optional<Point2> head_;
     Path wipe_{Point2::Zero(), {}};  // along which the next retraction goes
+    Vector2 wipe_shift_ = Vector2::Zero();
     format::PathStyle style_{};
     format::LayerEncoder encoder_;
 };

@@ -337,6 +337,8 @@ TEST_CASE("plate: every copy is printed like the only one, in every layer, whole
             drawn_back = retract->depth_mm > 0 || drawn_back;
         if (std::holds_alternative<format::PathStart>(*operation) && in_layer.size() > 1)
             CHECK(drawn_back);
+        // Along the copy that was left, not the one that is gone to.
+        if (const auto* wipe = std::get_if<format::Wipe>(operation)) CHECK(wipe->left_mm < 1.01);
     }
 }
 
