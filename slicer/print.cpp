@@ -65,6 +65,15 @@ void warn_of_missing(const profile::Profile& profile, Diagnostics& diagnostics) 
     warn(profile.layer.adaptive, "layer.adaptive");
 }
 
+void warn_of_no_wipe(const profile::Travel& travel, Diagnostics& diagnostics) {
+    if (!(travel.wipe_mm > 0) || travel.retract_length_mm > 0) return;
+    diagnostics.push_back({Severity::warning,
+                           ExitStatus::usage,
+                           "travel.wipe: nothing is wiped, as nothing is retracted "
+                           "(travel.retract_length = 0)",
+                           {}});
+}
+
 // Where a plate's size is stated, the part has to lie on it.
 Status check_plate(const Eigen::AlignedBox3d& box, const profile::Plate& plate) {
     const auto& [width_mm, depth_mm] = plate.size_mm;
@@ -179,6 +188,7 @@ Result<Summary> print(Model model, const std::string& source_name, const std::st
     if (!plate) return plate.error();
     summary.placed = layout_text(*plate);
     warn_of_missing(options.profile, diagnostics);
+    warn_of_no_wipe(options.profile.travel, diagnostics);
     warn_beside_plate(*plate, options.profile, diagnostics);
     const auto spans = layer_spans(summary.box.sizes().z(), options.profile.layer);
     auto writer = format::Writer::create(lyr_path, quantum_for(options.tolerance()),

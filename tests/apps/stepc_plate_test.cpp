@@ -93,3 +93,18 @@ TEST_CASE("stepc: copies that do not fit are refused with how many would, a skir
         folder.run("stepc p.step --set plate.size=200,200 --set adhesion.kind=skirt --at 10,10");
     CHECK(within.err.empty());
 }
+
+TEST_CASE("stepc: a wipe without a retraction to wipe on is told, and nothing is wiped") {
+    const Folder folder("stepc-no-wipe");
+    folder.copy("parts/transmission_pulley_at3_t10_center.step", "p.step");
+    const std::string slice = "stepc p.step --layer-height 0.4 --set travel.wipe=2 ";
+    const Ended none = folder.run(slice + "--set travel.retract_length=0");
+    CHECK(none.status == 0);
+    CHECK(none.err.find("travel.wipe: nothing is wiped") != std::string::npos);
+    CHECK(folder.run("lyrview p.lyr --info").out.find("\nwipe ") == std::string::npos);
+    CHECK(folder.run(slice).err.empty());
+    CHECK(folder.run("lyrview p.lyr --info").out.find("\nwipe ") != std::string::npos);
+    CHECK(folder.run("lyrview p.lyr --layer 3").out.find("<path id=\"wipes\"") !=
+          std::string::npos);
+    CHECK(folder.run("lyrview p.lyr --layer 3 --no-travel").out.find("wipe") == std::string::npos);
+}
