@@ -92,7 +92,7 @@ private:
     // Closed, in the order in which they are printed.
     void append_around(std::span<const Piece> pieces) {
         for (const Piece& piece : pieces) {
-            travel({.crosses = true}, start_of(piece));
+            travel(straight_, start_of(piece));
             begin(piece_style(piece));
             append(std::get<Strand>(piece.way), start_of(piece));
             head_ = start_of(piece);
@@ -185,10 +185,13 @@ private:
         style_ = style;
     }
 
-    void travel(const Travel& planned, const Point2& to) {
-        // To a copy's first place the way is from another copy, which was not planned.
+    // The order was planned without what lies around and other copies: nobody looked at the way from there.
+    const Travel& way_to(const PrintMove& move) const {
+        return &move == &layer_.moves.front() ? straight_ : move.travel;
+    }
+
+    void travel(const Travel& way, const Point2& to) {
         const bool enters = std::exchange(enters_, false);
-        const Travel& way = enters ? straight_ : planned;
         const Point2 from = head_.value_or(to);
         double length = 0;
         Point2 at = from;
@@ -234,7 +237,7 @@ private:
 
     void append_wall(const PrintMove& move) {
         const Strand wall = started_at(layer_.outlined.walls.strands[move.index], move.seam);
-        travel(move.travel, move.seam.point);
+        travel(way_to(move), move.seam.point);
         begin(wall_style(move.index));
         append(wall, move.seam.point);
         head_ = move.seam.point;
@@ -243,7 +246,7 @@ private:
     void append_piece(const PrintMove& move) {
         const Piece& piece = layer_.fill.pieces[move.index];
         const bool bridges = piece.role == Role::bridge;
-        travel(move.travel, move.seam.point);
+        travel(way_to(move), move.seam.point);
         if (bridges) encoder_.fan(0, profile_.bridge.fan);
         begin(piece_style(piece));
         if (const auto* run = std::get_if<HatchRun>(&piece.way)) {

@@ -407,3 +407,25 @@ TEST_CASE(
     }
     CHECK(results.size() == 1);
 }
+
+TEST_CASE(
+    "encode: the way from a brim to the walls retracts, also where the bed's origin is inside") {
+    Options options = thick_layers();
+    options.profile.adhesion.kind = profile::AdhesionKind::brim;
+    options.profile.travel.retract_min_travel_mm = 0.1;
+    options.profile.plate.at_mm = {-40, -10};
+    printed("cuboid.step", "origin.lyr", options);
+    auto reader = format::Reader::open(folder + "origin.lyr");
+    REQUIRE(reader);
+    bool drawn_back = false;
+    while (const format::Operation* operation = reader->read()) {
+        const format::Role role = reader->path().role;
+        if (const auto* path = std::get_if<format::PathStart>(operation))
+            if (path->style.role != format::Role::brim) break;
+        if (std::holds_alternative<format::Line>(*operation) && role == format::Role::brim)
+            drawn_back = false;
+        if (const auto* retract = std::get_if<format::Retract>(operation))
+            drawn_back = drawn_back || retract->depth_mm > 0;
+    }
+    CHECK(drawn_back);
+}
