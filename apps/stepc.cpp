@@ -159,7 +159,8 @@ std::string summary_text(const Arguments& arguments, const slicer::Summary& summ
                       "%.3f x %.3f x %.3f mm at %g mm a layer, tolerance %g mm\n", size.x(),
                       size.y(), size.z(), arguments.options.profile.layer.height_mm,
                       arguments.options.tolerance().total_mm);
-        text += line + slicer::estimate_text(summary, arguments.options.machine().name) +
+        text += line + summary.placed +
+                slicer::estimate_text(summary, arguments.options.machine().name) +
                 output_name(arguments.lyr_path) + ": " + counted(summary.bytes, "byte");
     }
     std::snprintf(line, sizeof line, ", %.2f s, ", time_s);

@@ -49,5 +49,7 @@ inline ArcShape arc_shape(const Arc& arc) {
 // The widest arc: tan(3/2 pi / 4) = 1 + sqrt(2). A wider one has ends so near each other that
 // rounding them would turn it about.
 inline constexpr double widest_sagitta_per_chord = (1 + std::numbers::sqrt2) / 2;
+// What is far beyond that (1.207) is no arc of a writer's.
+inline constexpr double most_sagitta_per_chord = 1.25;
 
 }  // namespace lyr::format

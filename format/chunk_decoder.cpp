@@ -4,13 +4,11 @@
 
 #include <algorithm>
 
+#include "format/arc.h"
 #include "format/layout.h"
 
 namespace lyr::format {
 namespace {
-
-// Writers keep arcs within 3/2 pi (1.207); what is far beyond is no arc of theirs.
-constexpr double most_sagitta_per_chord = 1.25;
 
 constexpr std::int64_t largest_row = std::int64_t{1} << 32;
 
@@ -45,6 +43,8 @@ ChunkDecoder::Step ChunkDecoder::next(Operation& out) {
             given = decode_run(out);
         } else if (stage_ != HatchStage::none) {
             given = decode_hatch_step(out);
+        } else if (wipes_) {
+            given = decode_wipe_piece(out);
         } else if (cursor_.at_end()) {
             if (operations_ == stated_operations_) return Step::end;
             fail("it has another number of operations than it says");
@@ -67,6 +67,7 @@ bool ChunkDecoder::decode(std::uint8_t code, Operation& out) {
     }
     if (code <= opcode::hatch) return decode_motion(code, out);
     if (code <= opcode::travel_acceleration) return decode_style(code, out);
+    if (code == opcode::wipe) return decode_wipe(out);
     if (code >= opcode::first_skippable) {
         cursor_.skip(cursor_.varint());
         return false;
@@ -196,9 +197,14 @@ bool ChunkDecoder::decode_machine(std::uint8_t code, Operation& out) {
     }
 }
 
+bool ChunkDecoder::may_extrude() {
+    if (!has_path_) return fail("extrusion before a path begins");
+    return wiped_ ? fail("extrusion does not begin where a wipe has ended") : true;
+}
+
 bool ChunkDecoder::decode_line(bool with_z, Operation& out) {
     const Point from = at_, to = step(with_z);
-    if (!has_path_) return fail("extrusion before a path begins");
+    if (!may_extrude()) return false;
     if (!in_range(to) || from == to) return false;
     out = Line{from, to, false};
     at_ = to;
@@ -208,7 +214,7 @@ bool ChunkDecoder::decode_line(bool with_z, Operation& out) {
 bool ChunkDecoder::decode_arc(bool with_z, Operation& out) {
     const Point from = at_, to = step(with_z);
     const std::int64_t sagitta = cursor_.signed_varint();
-    if (!has_path_) return fail("extrusion before a path begins");
+    if (!may_extrude()) return false;
     if (!in_range(to)) return false;
     const auto dx = static_cast<double>(to.x - from.x), dy = static_cast<double>(to.y - from.y);
     const auto rise = static_cast<double>(sagitta);
@@ -220,16 +226,17 @@ bool ChunkDecoder::decode_arc(bool with_z, Operation& out) {
 }
 
 bool ChunkDecoder::decode_travel(bool with_z, Operation& out) {
-    const Point from = at_, to = step(with_z);
-    if (!in_range(to) || from == to) return false;
-    out = Travel{from, to, false};
+    const Point from = head(), to = step(with_z);
+    if (!in_range(to)) return false;
     at_ = to;
-    return true;
+    wiped_ = false;
+    out = Travel{from, to, false};
+    return from != to;
 }
 
 bool ChunkDecoder::decode_circle(bool counter_clockwise, bool with_z, Operation& out) {
     const Point from = at_, center = step(with_z);
-    if (!has_path_) return fail("extrusion before a path begins");
+    if (!may_extrude()) return false;
     if (!in_range(center)) return false;
     if (center.x == from.x && center.y == from.y) return fail("a circle has no radius");
     at_.z = center.z;
@@ -327,10 +334,12 @@ bool ChunkDecoder::hatch_point(Point& point) {
 
 bool ChunkDecoder::decode_hatch_step(Operation& out) {
     if (stage_ == HatchStage::row && !begin_hatch_row()) return false;
-    const Point from = at_;
+    if (linked_ && !may_extrude()) return false;
+    const Point from = head();
     Point to;
     if (!hatch_point(to)) return false;
     at_ = to;
+    wiped_ = false;
     if (stage_ == HatchStage::start) {
         stage_ = HatchStage::end;
         if (from == to) return false;
@@ -348,15 +357,15 @@ bool ChunkDecoder::decode_hatch_step(Operation& out) {
     return true;
 }
 
-Point ChunkDecoder::step(bool with_z) {
+Point ChunkDecoder::step_from(const Point& from, bool with_z) {
     // Wide enough steps are refused by in_range(); the sum must only not overflow.
-    const auto add = [](std::int64_t from, std::int64_t step) {
-        return beyond(step, 2 * coordinate_limit) ? 2 * coordinate_limit : from + step;
+    const auto add = [](std::int64_t begin, std::int64_t step) {
+        return beyond(step, 2 * coordinate_limit) ? 2 * coordinate_limit : begin + step;
     };
-    Point to = at_;
-    to.x = add(at_.x, cursor_.signed_varint());
-    to.y = add(at_.y, cursor_.signed_varint());
-    if (with_z) to.z = add(at_.z, cursor_.signed_varint());
+    Point to = from;
+    to.x = add(from.x, cursor_.signed_varint());
+    to.y = add(from.y, cursor_.signed_varint());
+    if (with_z) to.z = add(from.z, cursor_.signed_varint());
     return to;
 }
 

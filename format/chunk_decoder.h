@@ -54,13 +54,19 @@ private:
     bool decode_path(Operation& out);
     bool decode_hatch(Operation& out);
     bool decode_hatch_step(Operation& out);
+    bool decode_wipe(Operation& out);
+    bool decode_wipe_piece(Operation& out);
     bool begin_hatch_row();
     bool begin_hatch_group();
     void pass_hatch_rows(std::uint64_t rows);
     bool hatch_point(Point& point);
 
-    Point step(bool with_z);
+    Point step(bool with_z) { return step_from(at_, with_z); }
+    Point step_from(const Point& from, bool with_z = false);
     bool in_range(const Point& point);
+    // A path has begun, and the head is where the next operation begins.
+    bool may_extrude();
+    const Point& head() const { return wiped_ ? wiped_to_ : at_; }
     std::uint32_t number();
     double setting(double per_unit);
 
@@ -83,6 +89,12 @@ private:
     bool one_way_ = false, forward_ = true, linked_ = false, group_linked_ = false;
     std::int64_t row_ = 0, row_offset_ = 0;
     std::uint64_t rows_left_ = 0, group_rows_left_ = 0, intervals_ = 0, ends_left_ = 0;
+
+    Point wiped_to_;      // the head, away from at_ ...
+    bool wiped_ = false;  // ... until it travels on
+    bool wipes_ = false;
+    std::size_t wipe_end_ = 0;
+    double wipe_depth_mm_ = 0, wipe_left_ = 0;  // quanta
 };
 
 }  // namespace lyr::format

@@ -27,6 +27,13 @@ double distance(const Point& a, const Point& b) {
 
 }  // namespace
 
+std::int64_t narrowed(const Point& from, const Point& to, std::int64_t sagitta) {
+    const double chord =
+        std::hypot(static_cast<double>(to.x - from.x), static_cast<double>(to.y - from.y));
+    const auto most = static_cast<std::int64_t>(widest_sagitta_per_chord * chord);
+    return std::clamp(sagitta, -most, most);
+}
+
 void LayerEncoder::Implementation::mistake(const std::string& what) {
     if (error_) return;
     error_ =
@@ -37,6 +44,11 @@ void LayerEncoder::Implementation::mistake(const std::string& what) {
 bool LayerEncoder::Implementation::has_path() {
     if (!has_path_) mistake("extrusion before a path begins");
     return has_path_ && !error_;
+}
+
+bool LayerEncoder::Implementation::may_extrude() {
+    if (wiped_to_) mistake("extrusion right behind a wipe");
+    return has_path();
 }
 
 std::optional<std::uint64_t> LayerEncoder::Implementation::checked(double value, double per_unit,
@@ -135,7 +147,7 @@ void LayerEncoder::Implementation::begin_path(const PathStyle& style) {
 
 void LayerEncoder::Implementation::travel_to(double x_mm, double y_mm, const double* z_mm) {
     const auto to = point(x_mm, y_mm, z_mm);
-    if (!to || *to == at_) return;
+    if (!to || (*to == at_ && !wiped_to_)) return;
     const bool with_z = to->z != at_.z;
     begin_operation(most_operation_bytes);
     put_byte(out_.bytes, with_z ? opcode::travel_z : opcode::travel);
@@ -145,7 +157,7 @@ void LayerEncoder::Implementation::travel_to(double x_mm, double y_mm, const dou
 
 void LayerEncoder::Implementation::line_to(double x_mm, double y_mm, const double* z_mm) {
     const auto to = point(x_mm, y_mm, z_mm);
-    if (to && has_path()) put_line(*to);
+    if (to && may_extrude()) put_line(*to);
 }
 
 void LayerEncoder::Implementation::put_line(const Point& to) {
@@ -161,17 +173,13 @@ void LayerEncoder::Implementation::arc_to(double x_mm, double y_mm, const double
     const double chord_mm = std::hypot(x_mm - given_x_mm_, y_mm - given_y_mm_);
     const auto to = point(x_mm, y_mm, z_mm);
     const auto sagitta = quanta(sagitta_mm);
-    if (!to || !sagitta || !has_path()) return;
+    if (!to || !sagitta || !may_extrude()) return;
     if (std::abs(sagitta_mm) >
         widest_sagitta_per_chord * chord_mm * (1 + sagitta_slack) + quantum_.mm(1)) {
         mistake("an arc turns by more than 3/2 pi");
         return;
     }
-    const double chord =
-        std::hypot(static_cast<double>(to->x - at_.x), static_cast<double>(to->y - at_.y));
-    // Rounding must not turn an arc of the widest kind into a wider one.
-    const auto most = static_cast<std::int64_t>(widest_sagitta_per_chord * chord);
-    const std::int64_t rounded = std::clamp(*sagitta, -most, most);
+    const std::int64_t rounded = narrowed(at_, *to, *sagitta);
     if (rounded == 0) {
         put_line(*to);
         return;
@@ -191,7 +199,7 @@ void LayerEncoder::Implementation::arc_to(double x_mm, double y_mm, const double
 void LayerEncoder::Implementation::circle(double center_x_mm, double center_y_mm,
                                           bool counter_clockwise) {
     const auto x = quanta(center_x_mm), y = quanta(center_y_mm);
-    if (!x || !y || !has_path()) return;
+    if (!x || !y || !may_extrude()) return;
     if (*x == at_.x && *y == at_.y) return;
     begin_operation(most_operation_bytes);
     put_byte(out_.bytes, counter_clockwise ? opcode::circle_ccw : opcode::circle_cw);
@@ -212,6 +220,11 @@ void LayerEncoder::Implementation::put_setting(std::uint8_t code, double value, 
     put_byte(out_.bytes, code);
     put_varint(out_.bytes, *number);
     if (target) *target = static_cast<double>(*number) / per_unit;
+}
+
+void LayerEncoder::Implementation::retract_to(double depth_mm) {
+    put_setting(opcode::retract, depth_mm, scale::filament);
+    depth_mm_ = depth_mm;
 }
 
 void LayerEncoder::Implementation::put_number(std::uint8_t code, std::uint32_t value) {
@@ -261,7 +274,8 @@ void LayerEncoder::Implementation::count_line(const Point& to) {
 }
 
 void LayerEncoder::Implementation::count_travel(const Point& to) {
-    travelled_ += distance(at_, to);
+    travelled_ += distance(head(), to);
+    wiped_to_.reset();
     include(to);
     at_ = to;
 }

@@ -15,6 +15,9 @@
 
 namespace lyr::format {
 
+// Rounding must not turn an arc of the widest kind into a wider one.
+std::int64_t narrowed(const Point& from, const Point& to, std::int64_t sagitta);
+
 class LayerEncoder::Implementation {
 public:
     Implementation(Quantum quantum, const LayerState& state);
@@ -28,10 +31,12 @@ public:
 
     // An operation of one setting; `target` (may be null) is the style's field that it changes.
     void put_setting(std::uint8_t code, double value, double per_unit, double* target = nullptr);
+    void retract_to(double depth_mm);
     void put_number(std::uint8_t code, std::uint32_t value);
     void temperature(Heater heater, double target_c, bool wait);
     void fan(std::uint32_t fan, double duty);
     void pause(PauseReason reason);
+    void wipe(std::span<const WipePiece> pieces, double depth_mm);
 
     PathStyle& style() { return style_; }
     const LayerState& state() const { return state_; }
@@ -54,6 +59,7 @@ private:
     // Keeps the first mistake.
     void mistake(const std::string& what);
     bool has_path();
+    bool may_extrude();
     // None: a mistake.
     std::optional<std::uint64_t> checked(double value, double per_unit, const char* name);
     std::optional<std::int64_t> quanta(double mm);
@@ -65,6 +71,15 @@ private:
     void close_chunk();
 
     void put_line(const Point& to);
+    // What is rounded of some pieces of a wipe, from the head on.
+    struct Wiped {
+        Point to;
+        std::int64_t sagitta = 0;
+        double length = 0;  // quanta
+    };
+    std::vector<Wiped> rounded(std::span<const WipePiece> pieces);
+    void put_wipe(std::span<const Wiped> pieces, double depth_mm);
+    Point head() const { return wiped_to_.value_or(at_); }
     void count_extrusion(double length_quanta);
     void count_travel(const Point& to);
     void count_line(const Point& to);
@@ -92,9 +107,11 @@ private:
 
     Point at_;
     double given_x_mm_ = 0, given_y_mm_ = 0;  // the same before rounding
+    std::optional<Point> wiped_to_;           // the head, where a wipe has led it away from at_
     PathStyle style_;                         // as the reader will have it
     bool has_path_ = false;
     double extruded_ = 0, travelled_ = 0;  // quanta
+    double depth_mm_ = 0;                  // to which the filament is drawn back
 
     std::optional<Grid> grid_;
     bool one_way_ = false;

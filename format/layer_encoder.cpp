@@ -14,6 +14,7 @@ LayerEncoder::Implementation::Implementation(Quantum quantum, const LayerState& 
         quantum_ = {};
         mistake("the quantum is not within 1 nm to 1 mm");
     }
+    depth_mm_ = state.retracted_mm;
     if (const auto start = point(state.start_x_mm, state.start_y_mm, &state.z_mm)) at_ = *start;
     out_.totals.motion = {at_, at_};
     checked(state.height_mm, scale::width, "a layer's height");
@@ -114,11 +115,15 @@ void LayerEncoder::retract() {
 }
 
 void LayerEncoder::retract_to(double depth_mm) {
-    implementation_->put_setting(opcode::retract, depth_mm, scale::filament);
+    implementation_->retract_to(depth_mm);
 }
 
 void LayerEncoder::unretract() {
     retract_to(0);
+}
+
+void LayerEncoder::wipe(std::span<const WipePiece> pieces, double depth_mm) {
+    implementation_->wipe(pieces, depth_mm);
 }
 
 void LayerEncoder::temperature(Heater heater, double target_c, bool wait) {

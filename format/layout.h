@@ -11,7 +11,7 @@ namespace lyr::format {
 // Prologue: magic, major (u16), minor (u16), quantum in nm (u32), CRC-32C of these 12 bytes.
 inline constexpr std::array<std::byte, 4> magic{std::byte{'L'}, std::byte{'Y'}, std::byte{'R'},
                                                 std::byte{0x1a}};
-inline constexpr std::uint32_t major_version = 1, minor_version = 0;
+inline constexpr std::uint32_t major_version = 1, minor_version = 1;
 inline constexpr std::size_t prologue_bytes = 16;
 inline constexpr std::uint32_t coarsest_quantum_nm = 1'000'000;
 
@@ -55,6 +55,7 @@ inline constexpr std::uint8_t temperature = 0x57, fan = 0x58, dwell = 0x59, tool
 inline constexpr std::uint8_t pause = 0x5b, object = 0x5c;
 // From here on: a varint length and as many bytes, which a reader may pass over.
 inline constexpr std::uint8_t first_skippable = 0xf0;
+inline constexpr std::uint8_t wipe = 0xf0;  // since minor version 1
 }  // namespace opcode
 
 // Which fields of the style a path states anew, in this order.

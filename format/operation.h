@@ -116,6 +116,17 @@ struct Travel {
     friend bool operator==(const Travel&, const Travel&) = default;
 };
 
+// A piece of a wipe: along the line (sagitta 0) or arc from `from` to `to`, without extruding, while the
+// filament is drawn back evenly, so that after `left_mm` more of such way, this piece included, it is
+// `depth_mm` behind where it was while extruding.
+struct Wipe {
+    Point from, to;
+    std::int64_t sagitta = 0;
+    double depth_mm = 0;
+    double left_mm = 0;
+    friend bool operator==(const Wipe&, const Wipe&) = default;
+};
+
 // A hatch run begins; its lines and travels follow as Line and Travel. For statistics only.
 struct HatchStart {
     double direction_x = 1, direction_y = 0;  // unit vector
@@ -212,7 +223,7 @@ struct Object {
 
 using Operation = std::variant<LayerStart, PathStart, Line, Arc, Circle, Travel, HatchStart, Width,
                                Speed, Acceleration, TravelSpeed, TravelAcceleration, Retract,
-                               Temperature, Fan, Dwell, Tool, Pause, Object>;
+                               Temperature, Fan, Dwell, Tool, Pause, Object, Wipe>;
 static_assert(std::is_trivially_copyable_v<Operation>);
 
 // A list of at most N values, in place.

@@ -206,6 +206,10 @@ void add_travel(std::vector<Key>& keys) {
                 "Shorter travels do without")
         .number("wipe", &Travel::wipe_mm, mm, {0, 100},
                 "How far the nozzle goes back along what it printed while it retracts; 0: not")
+        .fraction(
+            "retract_before_wipe", &Travel::retract_before_wipe, part,
+            "How much of a retraction comes before the wipe; more where the wipe is too short "
+            "for the rest")
         .number("z_hop", &Travel::z_hop_mm, mm, {0, 10}, "How far it is raised; 0: not")
         .flag("avoid_crossing", &Travel::avoid_crossing, "Travel around walls where that is near");
 }
@@ -238,8 +242,15 @@ void add_heat(std::vector<Key>& keys) {
 void add_plate(std::vector<Key>& keys) {
     Section(keys, "plate", &Profile::plate)
         .count("copies", &Plate::copies, {1, 10'000}, "How many of the part")
-        .number("spacing", &Plate::spacing_mm, mm, {0, 1000}, "Between copies")
+        .number("spacing", &Plate::spacing_mm, mm, {0, 1000}, "Between copies, or their brims")
         .flag("sequential", &Plate::sequential, "One copy after the other, not layer by layer")
+        .number(
+            "clearance_radius", &Plate::clearance_radius_mm, mm, {0, 1000},
+            "Sequential: how far the head reaches around the nozzle; no copy is nearer to another")
+        .number(
+            "clearance_height", &Plate::clearance_height_mm, mm, {0, 10'000},
+            "Sequential: height of the gantry over the nozzle; higher copies lie one behind the "
+            "other")
         .point("at", &Plate::at_mm, mm, bed_mm, "Where the first copy's lower left corner lies")
         .point("size", &Plate::size_mm, mm, {0, bed_mm.high},
                "Size of the bed, on which all copies must lie; [0, 0]: not stated");

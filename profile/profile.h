@@ -158,7 +158,8 @@ struct Travel {
     double retract_speed_mm_s = 35;
     double unretract_speed_mm_s = 35;
     double retract_min_travel_mm = 2;
-    double wipe_mm = 0;  // back along what was just printed; 0: none
+    double wipe_mm = 0;              // back along what was just printed; 0: none
+    double retract_before_wipe = 0;  // share of a retraction
     double z_hop_mm = 0;
     bool avoid_crossing = true;
     bool operator==(const Travel&) const = default;
@@ -189,7 +190,10 @@ struct Fan {
 struct Plate {
     std::uint32_t copies = 1;
     double spacing_mm = 6;
-    bool sequential = false;          // one part after the other instead of layer by layer
+    bool sequential = false;  // one part after the other instead of layer by layer
+    // Of the head, around the nozzle, and of the gantry, over it.
+    double clearance_radius_mm = 45;
+    double clearance_height_mm = 25;
     std::array<double, 2> at_mm{};    // of the lower left corner of the first part's box
     std::array<double, 2> size_mm{};  // 0, 0: not stated
     bool operator==(const Plate&) const = default;

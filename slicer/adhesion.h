@@ -11,4 +11,7 @@ namespace lyr::slicer {
 std::vector<Piece> adhesion_of(Region outline, double height_mm, const Options& options,
                                std::size_t& unresolved);
 
+// How far skirt or brim reaches from the outline, its own width included; 0: there is none.
+double adhesion_reach_mm(const profile::Profile& profile);
+
 }  // namespace lyr::slicer

@@ -7,6 +7,7 @@
 
 #include "kernel/toolpath/layer_order.h"
 #include "slicer/styles.h"
+#include "slicer/wipe.h"
 
 namespace lyr::slicer {
 namespace {
@@ -22,12 +23,8 @@ constexpr double quanta_off = 1.3;
 Strand reversed(Strand strand) {
     auto* path = std::get_if<Path>(&strand.path);
     if (!path) return strand;
-    Path back{path->segments.back().end, {}};
-    for (std::size_t i = path->segments.size(); i-- > 0;)
-        back.segments.push_back(
-            {i > 0 ? path->segments[i - 1].end : path->start, -path->segments[i].sagitta_mm});
     std::reverse(strand.widths_mm.begin(), strand.widths_mm.end());
-    strand.path = std::move(back);
+    strand.path = slicer::reversed(*path);
     return strand;
 }
 
@@ -48,60 +45,58 @@ public:
         : layer_(layer),
           profile_(options.profile),
           styles_(options.profile, layer.index, layer.span.height_mm()),
-          detours_(options.profile.travel.avoid_crossing
-                       ? std::make_optional<Detours>(inner_region(), options.tolerance().unite_mm())
-                       : std::nullopt),
-          moves_(order()),
           encoder_(quantum, state()) {}
 
     Result<format::EncodedLayer> encode() {
-        for (const Piece& piece : layer_.fill.around) {
-            const Strand& strand = std::get<Strand>(piece.way);
-            travel({.crosses = true}, start_of(strand.path));
-            begin(piece_style(piece));
-            append(strand);
-            head_ = start_of(strand.path);
-        }
-        for (const PrintMove& move : moves_) {
+        if (!layer_.skirt.empty()) append_around(layer_.skirt);
+        for (const Copy& copy : layer_.copies) append(copy);
+        const auto wiped_to = retracts() ? draw_back() : std::nullopt;
+        const Point2 end = wiped_to.value_or(head_.value_or(corner()));
+        if (layer_.lift_mm > 0) travel_to(end, layer_.span.top_mm + layer_.lift_mm);
+        return encoder_.finish();
+    }
+
+private:
+    Point2 first_point() const {
+        if (!layer_.skirt.empty()) return start_of(layer_.skirt.front());
+        const Vector2& shift = layer_.copies.front().shift;
+        if (!layer_.fill.around.empty()) return start_of(layer_.fill.around.front()) + shift;
+        return (layer_.moves.empty() ? corner() : layer_.moves.front().seam.point) + shift;
+    }
+
+    // Of the first copy's box: where the head waits while there is nothing to print.
+    Point2 corner() const { return {profile_.plate.at_mm[0], profile_.plate.at_mm[1]}; }
+
+    static Point2 start_of(const Piece& closed) {
+        return lyr::start_of(std::get<Strand>(closed.way).path);
+    }
+
+    void append(const Copy& copy) {
+        const bool is_empty = layer_.fill.around.empty() && layer_.moves.empty();
+        if (is_empty && layer_.copies.size() > 1) return;
+        if (head_) *head_ += shift_ - copy.shift;
+        shift_ = copy.shift;
+        if (copy.object != object_) encoder_.object(copy.object);
+        object_ = copy.object;
+        enters_ = head_.has_value();
+        append_around(layer_.fill.around);
+        for (const PrintMove& move : layer_.moves) {
             if (move.is_wall) {
                 append_wall(move);
             } else {
                 append_piece(move);
             }
         }
-        if (retracts()) encoder_.retract();
-        return encoder_.finish();
     }
 
-private:
-    // Where the empty head may go without crossing a wall: within the middles of the outermost.
-    std::vector<Contour> inner_region() const {
-        std::vector<Contour> region;
-        const Walls& walls = layer_.outlined.walls;
-        for (std::size_t i = 0; i < walls.strands.size(); ++i)
-            if (walls.depths[i] == 0) region.push_back(walls.strands[i].path);
-        return region;
-    }
-
-    std::vector<PrintMove> order() const {
-        std::vector<OpenPiece> pieces;
-        for (const Piece& piece : layer_.fill.pieces) pieces.push_back(ends_of(piece));
-        const Walls& walls = layer_.outlined.walls;
-        return layer_order({.region = layer_.outlined.outline,
-                            .walls = walls.strands,
-                            .depths = walls.depths,
-                            .seams = layer_.seams,
-                            .pieces = pieces,
-                            .sequence = profile_.perimeters.first == profile::WallOrder::outer
-                                            ? WallSequence::outer_first
-                                            : WallSequence::inner_first,
-                            .detours = detours_ ? &*detours_ : nullptr});
-    }
-
-    Point2 first_point() const {
-        if (!layer_.fill.around.empty())
-            return start_of(std::get<Strand>(layer_.fill.around.front().way).path);
-        return moves_.empty() ? Point2::Zero() : moves_.front().seam.point;
+    // Closed, in the order in which they are printed.
+    void append_around(std::span<const Piece> pieces) {
+        for (const Piece& piece : pieces) {
+            travel(straight_, start_of(piece));
+            begin(piece_style(piece));
+            append(std::get<Strand>(piece.way), start_of(piece));
+            head_ = start_of(piece);
+        }
     }
 
     format::LayerState state() {
@@ -118,7 +113,8 @@ private:
         state.retract_length_mm = travel.retract_length_mm;
         state.retract_speed_mm_s = travel.retract_speed_mm_s;
         state.unretract_speed_mm_s = travel.unretract_speed_mm_s;
-        state.retracted_mm = layer_.index > 0 ? travel.retract_length_mm : 0;
+        state.retracted_mm = layer_.begins_print ? 0 : travel.retract_length_mm;
+        state.object = object_ = layer_.skirt.empty() ? layer_.copies.front().object : 0;
         retracted_ = state.retracted_mm > 0;
         const profile::Temperature& heat = profile_.temperature;
         const bool first = layer_.index == 0;
@@ -143,7 +139,7 @@ private:
         for (std::size_t i = 0; i < walls.strands.size(); ++i)
             add(wall_style(i), lyr::length_mm(walls.strands[i].path));
         for (const Piece& piece : layer_.fill.pieces) add(piece_style(piece), length_mm(piece));
-        return time_s;
+        return time_s * static_cast<double>(layer_.copies.size());
     }
 
     // The quicker a layer, the more fan; those that are too quick are slowed down (docs/profiles.md, fan).
@@ -181,62 +177,94 @@ private:
 
     bool retracts() const { return profile_.travel.retract_length_mm > 0; }
 
+    bool wipes() const { return retracts() && profile_.travel.wipe_mm > 0; }
+
     void begin(const format::PathStyle& style) {
         if (style == style_) return;
         encoder_.begin_path(style);
         style_ = style;
     }
 
+    // The order was planned without what lies around and other copies: nobody looked at the way from there.
+    const Travel& way_to(const PrintMove& move) const {
+        return &move == &layer_.moves.front() ? straight_ : move.travel;
+    }
+
     void travel(const Travel& way, const Point2& to) {
+        const bool enters = std::exchange(enters_, false);
         const Point2 from = head_.value_or(to);
         double length = 0;
         Point2 at = from;
         for (const Point2& via : way.via) length += (via - std::exchange(at, via)).norm();
         length += (to - at).norm();
-        const bool draws_back = retracts() && !retracted_ && (way.crosses || !detours_) &&
-                                length >= profile_.travel.retract_min_travel_mm;
+        const bool crosses = way.crosses || !profile_.travel.avoid_crossing;
+        const bool is_long = length >= profile_.travel.retract_min_travel_mm;
+        const bool draws_back = retracts() && !retracted_ && crosses && (is_long || enters);
         const double hop_mm = draws_back ? profile_.travel.z_hop_mm : 0;
-        if (draws_back) {
-            encoder_.retract();
-            retracted_ = true;
-        }
+        const Point2 lift = draws_back ? draw_back().value_or(from) : from;
         const double z_mm = layer_.span.top_mm;
-        if (hop_mm > 0) encoder_.travel_to(from.x(), from.y(), z_mm + hop_mm);
-        for (const Point2& via : way.via) encoder_.travel_to(via.x(), via.y());
-        encoder_.travel_to(to.x(), to.y());
-        if (hop_mm > 0) encoder_.travel_to(to.x(), to.y(), z_mm);
+        if (hop_mm > 0) travel_to(lift, z_mm + hop_mm);
+        for (const Point2& via : way.via) travel_to(via, z_mm + hop_mm);
+        travel_to(to, z_mm + hop_mm);
+        if (hop_mm > 0) travel_to(to, z_mm);
         if (retracted_) encoder_.unretract();
         retracted_ = false;
     }
 
+    void travel_to(const Point2& to, double z_mm) {
+        encoder_.travel_to(to.x() + shift_.x(), to.y() + shift_.y(), z_mm);
+    }
+
+    void keep(Path wipe) {
+        wipe_ = std::move(wipe);
+        wipe_shift_ = shift_;
+    }
+
+    // The head's place, if a wipe has moved it. It is along what was printed last, which may be of another copy.
+    std::optional<Point2> draw_back() {
+        retracted_ = true;
+        const Path wipe = std::move(wipe_);
+        wipe_.segments.clear();
+        if (!wipe.segments.empty()) {
+            const double before_mm = depth_before_wipe_mm(wipe, profile_);
+            if (before_mm > 0) encoder_.retract_to(before_mm);
+            encoder_.wipe(wipe_pieces(wipe, wipe_shift_), profile_.travel.retract_length_mm);
+        }
+        encoder_.retract();
+        if (wipe.segments.empty()) return std::nullopt;
+        return wipe.segments.back().end + wipe_shift_ - shift_;
+    }
+
     void append_wall(const PrintMove& move) {
         const Strand wall = started_at(layer_.outlined.walls.strands[move.index], move.seam);
-        travel(move.travel, move.seam.point);
+        travel(way_to(move), move.seam.point);
         begin(wall_style(move.index));
-        append(wall);
+        append(wall, move.seam.point);
         head_ = move.seam.point;
     }
 
     void append_piece(const PrintMove& move) {
         const Piece& piece = layer_.fill.pieces[move.index];
         const bool bridges = piece.role == Role::bridge;
-        travel(move.travel, move.seam.point);
+        travel(way_to(move), move.seam.point);
         if (bridges) encoder_.fan(0, profile_.bridge.fan);
         begin(piece_style(piece));
         if (const auto* run = std::get_if<HatchRun>(&piece.way)) {
             append(move.reversed ? lyr::reversed(*run) : *run);
         } else {
             const Strand& strand = std::get<Strand>(piece.way);
-            append(move.reversed ? reversed(strand) : strand);
+            append(move.reversed ? reversed(strand) : strand, move.seam.point);
         }
         if (bridges) encoder_.fan(0, fan_);
         const OpenPiece ends = ends_of(piece);
         head_ = move.reversed ? ends.first : ends.last;
     }
 
-    void append(const Strand& strand) {
+    void append(const Strand& strand, const Point2& start) {
+        if (wipes()) keep(wipe_along(strand, start, profile_.travel.wipe_mm));
         if (const auto* circle = std::get_if<FullCircle>(&strand.path)) {
-            encoder_.circle(circle->centre.x(), circle->centre.y(), circle->counter_clockwise);
+            const Point2 centre = circle->centre + shift_;
+            encoder_.circle(centre.x(), centre.y(), circle->counter_clockwise);
             return;
         }
         const Path& path = std::get<Path>(strand.path);
@@ -253,11 +281,11 @@ private:
 
     void append(const Point2& from, const Segment& segment) {
         const auto arc_to = [&](const Point2& to, double sagitta_mm) {
-            encoder_.arc_to(to.x(), to.y(), sagitta_mm);
+            encoder_.arc_to(to.x() + shift_.x(), to.y() + shift_.y(), sagitta_mm);
         };
         const double sweep = sweep_rad(from, segment);
         if (segment.sagitta_mm == 0) {
-            encoder_.line_to(segment.end.x(), segment.end.y());
+            encoder_.line_to(segment.end.x() + shift_.x(), segment.end.y() + shift_.y());
         } else if (std::abs(sweep) <= widest_arc_rad) {
             arc_to(segment.end, segment.sagitta_mm);
         } else {
@@ -268,15 +296,18 @@ private:
     }
 
     void append(const HatchRun& run) {
+        if (wipes()) keep(wipe_along(run, profile_.travel.wipe_mm));
+        const double along_mm = run.direction.dot(shift_);
+        const double left_mm = cross(run.direction, shift_);
         std::vector<format::HatchRow> rows;
         std::vector<format::HatchInterval> intervals;
         for (const HatchRow& row : run.rows) {
             rows.push_back({1, row.linked});
-            intervals.push_back({row.start_mm, row.end_mm});
+            intervals.push_back({row.start_mm + along_mm, row.end_mm + along_mm});
         }
         encoder_.hatch({.direction_x = run.direction.x(),
                         .direction_y = run.direction.y(),
-                        .offset_mm = run.offset_mm,
+                        .offset_mm = run.offset_mm + left_mm,
                         .pitch_mm = run.pitch_mm,
                         .one_way = false,
                         .rows = rows,
@@ -286,16 +317,48 @@ private:
     const LayerToEncode& layer_;
     const profile::Profile& profile_;
     Styles styles_;
-    std::optional<Detours> detours_;
-    std::vector<PrintMove> moves_;
+    const Travel straight_{.crosses = true};
     double fan_ = 0;
     bool retracted_ = false;
+    bool enters_ = false;  // a copy, by the next travel
+    std::uint32_t object_ = 0;
+    Vector2 shift_ =
+        Vector2::Zero();  // of the copy that is printed; all points are those of the first one
     std::optional<Point2> head_;
+    Path wipe_{Point2::Zero(), {}};  // along which the next retraction goes
+    Vector2 wipe_shift_ = Vector2::Zero();
     format::PathStyle style_{};
     format::LayerEncoder encoder_;
 };
 
+// Where the empty head may go without crossing a wall: within the middles of the outermost.
+std::vector<Contour> inner_region(const Walls& walls) {
+    std::vector<Contour> region;
+    for (std::size_t i = 0; i < walls.strands.size(); ++i)
+        if (walls.depths[i] == 0) region.push_back(walls.strands[i].path);
+    return region;
+}
+
 }  // namespace
+
+std::vector<PrintMove> order_layer(const OutlinedLayer& outlined, const LayerFill& fill,
+                                   std::span<const Seam> seams, const Options& options) {
+    const Walls& walls = outlined.walls;
+    std::vector<OpenPiece> pieces;
+    for (const Piece& piece : fill.pieces) pieces.push_back(ends_of(piece));
+    std::optional<Detours> detours;
+    if (options.profile.travel.avoid_crossing)
+        detours.emplace(inner_region(walls), options.tolerance().unite_mm());
+    const bool outer_first = options.profile.perimeters.first == profile::WallOrder::outer;
+    return layer_order(
+        {.region = outlined.outline,
+         .walls = walls.strands,
+         .depths = walls.depths,
+         .seams = seams,
+         .pieces = pieces,
+         .sequence = outer_first ? WallSequence::outer_first : WallSequence::inner_first,
+         .detours = detours ? &*detours : nullptr});
+}
 
 format::Quantum quantum_for(const Tolerance& tolerance) {
     format::Quantum best{1};

@@ -9,11 +9,13 @@
 #include "base/text.h"
 #include "format/writer.h"
 #include "kernel/brep/placement.h"
-#include "kernel/toolpath/layer_order.h"
+#include "slicer/adhesion.h"
 #include "slicer/bounds.h"
 #include "slicer/encode.h"
 #include "slicer/layers.h"
+#include "slicer/plate.h"
 #include "slicer/slicer.h"
+#include "slicer/write_layers.h"
 
 namespace lyr::slicer {
 namespace {
@@ -61,9 +63,15 @@ void warn_of_missing(const profile::Profile& profile, Diagnostics& diagnostics) 
     warn(profile.support.kind != profile::SupportKind::none, "support.kind");
     warn(profile.adhesion.kind == profile::AdhesionKind::raft, "adhesion.kind = raft");
     warn(profile.layer.adaptive, "layer.adaptive");
-    warn(profile.travel.wipe_mm > 0, "travel.wipe");
-    warn(profile.plate.copies > 1, "plate.copies");
-    warn(profile.plate.sequential, "plate.sequential");
+}
+
+void warn_of_no_wipe(const profile::Travel& travel, Diagnostics& diagnostics) {
+    if (!(travel.wipe_mm > 0) || travel.retract_length_mm > 0) return;
+    diagnostics.push_back({Severity::warning,
+                           ExitStatus::usage,
+                           "travel.wipe: nothing is wiped, as nothing is retracted "
+                           "(travel.retract_length = 0)",
+                           {}});
 }
 
 // Where a plate's size is stated, the part has to lie on it.
@@ -82,6 +90,26 @@ Status check_plate(const Eigen::AlignedBox3d& box, const profile::Plate& plate) 
     return Diagnostic{Severity::error, ExitStatus::geometry, text, {}};
 }
 
+// Skirts and brims reach out of the parts' boxes.
+void warn_beside_plate(const PlateLayout& plate, const profile::Profile& profile,
+                       Diagnostics& diagnostics) {
+    const auto& [width_mm, depth_mm] = profile.plate.size_mm;
+    const double reach_mm = adhesion_reach_mm(profile);
+    if ((width_mm == 0 && depth_mm == 0) || reach_mm == 0) return;
+    double beside_mm = 0;
+    for (const Contour& contour : plate.outline)
+        for (const Segment& segment : std::get<Path>(contour).segments)
+            beside_mm = std::max({beside_mm, reach_mm - segment.end.x(), reach_mm - segment.end.y(),
+                                  segment.end.x() + reach_mm - width_mm,
+                                  segment.end.y() + reach_mm - depth_mm});
+    if (beside_mm <= resolution_mm) return;
+    char text[120];
+    std::snprintf(
+        text, sizeof text, "the %s reaches %.3g mm beyond the plate (plate.at, plate.size)",
+        profile.adhesion.kind == profile::AdhesionKind::skirt ? "skirt" : "brim", beside_mm);
+    diagnostics.push_back({Severity::warning, ExitStatus::geometry, text, {}});
+}
+
 Model on_bed(Model model, const Options& options, Eigen::AlignedBox3d& box) {
     box = bounding_box(model, options.tolerance(), thread_count(options));
     const Vector3 move(options.profile.plate.at_mm[0] - box.min().x(),
@@ -90,8 +118,16 @@ Model on_bed(Model model, const Options& options, Eigen::AlignedBox3d& box) {
     return transformed(std::move(model), Eigen::Affine3d(Eigen::Translation3d(move)));
 }
 
-format::Metadata metadata(const std::string& source_name, const Options& options) {
+// Metadata are a block of 64 KiB; objects beyond that have their numbers only.
+constexpr std::size_t most_named_bytes = 32'768;
+
+format::Metadata metadata(const std::string& source_name, std::size_t copies,
+                          const Options& options) {
     format::Metadata data;
+    const std::size_t name_bytes = source_name.size() + std::to_string(copies).size() + 1;
+    if (copies > 1 && copies * name_bytes <= most_named_bytes)
+        for (std::size_t i = 1; i <= copies; ++i)
+            data.objects.push_back(source_name + ' ' + std::to_string(i));
     data.generator = "stepc " LYR_VERSION;
     data.source_name = source_name;
     data.printer = options.machine().name;
@@ -137,106 +173,6 @@ Result<std::vector<OutlinedLayer>> outlined(const Model& placed, std::span<const
     return layers;
 }
 
-// Of the outermost walls, layer by layer: each next to those of the layer below.
-std::vector<std::vector<Seam>> seams_of(std::span<const OutlinedLayer> layers, SeamChoice choice) {
-    std::vector<std::vector<Seam>> seams;
-    for (const OutlinedLayer& layer : layers) {
-        const std::span<const Seam> below = seams.empty() ? std::span<const Seam>() : seams.back();
-        seams.push_back(outer_seams(layer.walls.strands, layer.walls.depths, choice, below));
-    }
-    return seams;
-}
-
-struct FilledLayer {
-    std::size_t unresolved = 0;
-    std::optional<format::EncodedLayer> encoded{};
-    LayerEstimate estimate{};
-    std::optional<Diagnostic> error{};
-};
-
-FilledLayer fill_and_encode(std::size_t i, const LayerSpan& span, const OutlinedLayer& outlined,
-                            std::span<const SkinOutline> outlines, std::span<const Seam> seams,
-                            const Options& options, const Estimator& estimator) {
-    const LayerFill fill = fill_layer(i, span, outlined.walls, outlines, options);
-    FilledLayer made{.unresolved = fill.unresolved};
-    auto encoded =
-        encode_layer({i, span, outlined, fill, seams}, options, quantum_for(options.tolerance()));
-    if (!encoded) {
-        made.error = encoded.error();
-        return made;
-    }
-    const auto estimate = estimator.layer(*encoded, static_cast<std::uint32_t>(i));
-    if (!estimate) {
-        made.error = estimate.error();
-        return made;
-    }
-    made.encoded = std::move(*encoded);
-    made.estimate = *estimate;
-    return made;
-}
-
-// Appends layers, each with its time: that of its own motions and of the way to it.
-class TimedWriter {
-public:
-    TimedWriter(format::Writer& writer, const Estimator& estimator)
-        : writer_(writer), estimator_(estimator), head_(estimator.start()) {}
-
-    Status append(format::EncodedLayer layer, std::uint32_t index, const LayerEstimate& made) {
-        const auto way = estimator_.approach(head_, layer, index);
-        if (!way) return way.error();
-        layer.state.estimated_time_s = way->time_s() + made.estimate.time_s();
-        estimate_ += *way;
-        estimate_ += made.estimate;
-        head_ = made.end;
-        return writer_.append(layer);
-    }
-    const Estimate& estimate() const { return estimate_; }
-
-private:
-    format::Writer& writer_;
-    const Estimator& estimator_;
-    moves::Head head_;
-    Estimate estimate_{};
-};
-
-// Fills, orders and writes. The print's estimate.
-Result<Estimate> write_layers(std::span<const OutlinedLayer> layers,
-                              std::span<const LayerSpan> spans, const Options& options,
-                              format::Writer& writer, const Progress& progress,
-                              Diagnostics& diagnostics) {
-    const Estimator estimator(options.machine(), options.profile.filament.diameter_mm);
-    TimedWriter timed(writer, estimator);
-    const auto seams = seams_of(layers, seam_choice(options.profile.perimeters.seam));
-    std::vector<SkinOutline> outlines;
-    for (const OutlinedLayer& layer : layers) outlines.push_back(layer.seen);
-    std::optional<Diagnostic> failed;
-    in_order(
-        layers.size(), thread_count(options),
-        [&](std::size_t i) {
-            return fill_and_encode(i, spans[i], layers[i], outlines, seams[i], options, estimator);
-        },
-        [&](std::size_t i, FilledLayer made) {
-            if (made.unresolved > 0)
-                diagnostics.push_back(
-                    {Severity::warning,
-                     ExitStatus::geometry,
-                     counted(made.unresolved, "part") + " of the layer's fill could not be made",
-                     {.layer = static_cast<int>(i + 1), .z_mm = spans[i].middle_mm()}});
-            if (made.error) {
-                failed = made.error;
-            } else if (Status appended = timed.append(std::move(*made.encoded),
-                                                      static_cast<std::uint32_t>(i), made.estimate);
-                       !appended) {
-                failed = appended.error();
-            }
-            if (failed) return false;
-            progress("fill", i + 1, layers.size());
-            return true;
-        });
-    if (failed) return *failed;
-    return timed.estimate();
-}
-
 }  // namespace
 
 Result<Summary> print(Model model, const std::string& source_name, const std::string& lyr_path,
@@ -248,10 +184,15 @@ Result<Summary> print(Model model, const std::string& source_name, const std::st
         return checked.error();
     if (Status checked = check_plate(summary.box, options.profile.plate); !checked)
         return checked.error();
+    const auto plate = lay_out(summary.box, options.profile);
+    if (!plate) return plate.error();
+    summary.placed = layout_text(*plate);
     warn_of_missing(options.profile, diagnostics);
+    warn_of_no_wipe(options.profile.travel, diagnostics);
+    warn_beside_plate(*plate, options.profile, diagnostics);
     const auto spans = layer_spans(summary.box.sizes().z(), options.profile.layer);
     auto writer = format::Writer::create(lyr_path, quantum_for(options.tolerance()),
-                                         metadata(source_name, options));
+                                         metadata(source_name, plate->shifts.size(), options));
     if (!writer) return writer.error();
     std::optional<ReplaceFile> report;
     if (!report_path.empty()) {
@@ -261,7 +202,8 @@ Result<Summary> print(Model model, const std::string& source_name, const std::st
     }
     const auto layers = outlined(placed, spans, options, progress, summary, diagnostics);
     if (!layers) return layers.error();
-    const auto estimate = write_layers(*layers, spans, options, *writer, progress, diagnostics);
+    const auto estimate =
+        write_layers({*layers, spans, *plate, options}, *writer, progress, diagnostics);
     if (!estimate) return estimate.error();
     if (report) {
         for (const OutlinedLayer& layer : *layers) report->write(to_json(layer.section));

@@ -10,7 +10,8 @@
 //  3. Layers are `layer.height_mm` thick, the first one `layer.first_height_mm`; each is the section at its middle, as
 //     long as that is below the part's top. So a part of a whole number of layers has just as many, and a rest of
 //     less than half a layer is left off, of more than half counts as a layer.
-//  4. On the bed means: lowest point at z = 0, the bounding box's lower left corner at `plate.at_mm`.
+//  4. On the bed means: lowest point at z = 0, the bounding box's lower left corner at `plate.at_mm`. Copies lie as
+//     plate.h has it; they are made once, and differ in their place and in the way from one to the other only.
 //  5. A contour that does not close is an error, unless `allow_open`; then it is left out and reported.
 //  6. Surfaces that close, if need be after sewing, are solids. Those that do not are left out beside solids; alone they
 //     are an error (status geometry), unless `allow_open`.
@@ -62,7 +63,8 @@ struct Summary {
     std::size_t uncrossed_layers = 0;  // whose sections crossed themselves
     std::size_t slivers = 0;  // contours left out there: gaps and leftovers within the tolerance
     std::uint64_t bytes = 0;
-    Eigen::AlignedBox3d box{};           // of the model, as it is printed
+    Eigen::AlignedBox3d box{};           // of the model, as it is printed; of copies: the first one
+    std::string placed{};                // what lies where, if there are copies
     Estimate estimate{};                 // of a print
     double filament_mm = 0, mass_g = 0;  // as the file has them
 };

@@ -48,6 +48,18 @@ private:
         if (style.speed_mm_s > 0) out_.moving_time_s += length_mm / style.speed_mm_s;
     }
 
+    void travel(double length_quanta) {
+        const double length_mm = length_quanta * mm_;
+        out_.travel_mm += length_mm;
+        if (travel_speed_mm_s_ > 0) out_.moving_time_s += length_mm / travel_speed_mm_s_;
+    }
+
+    // A retraction may come in parts.
+    void draw_back(double depth_mm) {
+        if (depth_mm > 0 && !drawn_back_) ++out_.retractions;
+        drawn_back_ = depth_mm > 0;
+    }
+
     void count(const LayerStart&) {
         add(out_.layer_heads);
         const Layer& layer = reader_.layer();
@@ -61,6 +73,7 @@ private:
         out_.chunks += layer.totals.chunks;
         out_.operations += layer.totals.operations;
         travel_speed_mm_s_ = layer.state.travel_speed_mm_s;
+        drawn_back_ = layer.state.retracted_mm > 0;
         for (const HeaterTarget& target : layer.state.temperatures)
             heat(target.heater, target.target_c);
     }
@@ -99,9 +112,13 @@ private:
         } else {
             add(out_.travels);
         }
-        const double length_mm = straight(travel.from, travel.to) * mm_;
-        out_.travel_mm += length_mm;
-        if (travel_speed_mm_s_ > 0) out_.moving_time_s += length_mm / travel_speed_mm_s_;
+        this->travel(straight(travel.from, travel.to));
+    }
+    void count(const Wipe& wipe) {
+        add(out_.wipes);
+        draw_back(wipe.depth_mm);
+        travel(wipe.sagitta == 0 ? straight(wipe.from, wipe.to)
+                                 : arc_shape(Arc{wipe.from, wipe.to, wipe.sagitta}).length());
     }
     void count(const HatchStart&) {
         ++out_.hatch_runs;
@@ -117,7 +134,7 @@ private:
     void count(const TravelAcceleration&) { add(out_.settings); }
     void count(const Retract& retract) {
         add(out_.rest);
-        if (retract.depth_mm > 0) ++out_.retractions;
+        draw_back(retract.depth_mm);
     }
     void count(const Temperature& temperature) {
         add(out_.rest);
@@ -136,6 +153,7 @@ private:
     Statistics& out_;
     double mm_;
     double travel_speed_mm_s_ = 0;
+    bool drawn_back_ = false;
     std::uint64_t bytes_ = 0;
 };
 
@@ -153,8 +171,9 @@ Result<Statistics> statistics_of(Reader& reader) {
     }
     out.bytes = reader.position().end;
     std::uint64_t counted = 0;
-    for (const KindStatistics* kind : {&out.lines, &out.arcs, &out.circles, &out.hatch_lines,
-                                       &out.travels, &out.paths, &out.settings, &out.layer_heads})
+    for (const KindStatistics* kind :
+         {&out.lines, &out.arcs, &out.circles, &out.hatch_lines, &out.travels, &out.wipes,
+          &out.paths, &out.settings, &out.layer_heads})
         counted += kind->bytes;
     // The file's frame: prologue, metadata, heads of chunks, index, end.
     out.rest.bytes = out.bytes - counted;

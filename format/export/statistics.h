@@ -2,8 +2,8 @@
 //
 // Contract
 //  1. Every operation is counted once, and every byte of the file belongs to one kind: the bytes of
-//     lines, arcs, circles, hatch lines, travels, paths, settings, layer heads and the rest add up
-//     to `bytes`.
+//     lines, arcs, circles, hatch lines, travels, wipes, paths, settings, layer heads and the rest
+//     add up to `bytes`.
 //  2. Lengths are those of the file's paths (arcs along the arc, ramps along the slope), volumes
 //     are length x cross-section.
 
@@ -44,9 +44,10 @@ struct Statistics {
     // are changes of width, speed and acceleration; the rest is other operations and the file's
     // frame.
     KindStatistics lines, arcs, circles, hatch_lines, travels, paths, settings, layer_heads, rest;
+    KindStatistics wipes;  // their pieces
     std::uint64_t hatch_runs = 0, hatch_travels = 0, retractions = 0;
 
-    double travel_mm = 0;
+    double travel_mm = 0;      // wipes included
     double moving_time_s = 0;  // way over speed
     double dwell_time_s = 0;
 };

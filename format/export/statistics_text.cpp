@@ -128,6 +128,7 @@ void append_bytes(std::string& text, const Statistics& s) {
     row("circle", s.circles);
     row("hatch line", s.hatch_lines);
     row("travel", s.travels);
+    row("wipe", s.wipes);
     row("path", s.paths);
     row("setting", s.settings);
     row("layer", s.layer_heads);

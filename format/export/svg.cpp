@@ -20,6 +20,8 @@ namespace {
 
 // The lighter stroke's share of the width.
 constexpr double core_share = 0.7;
+// Of a travel's line: wipes lie upon what was printed.
+constexpr double wipe_width = 2;
 
 struct Group {
     Role role = Role::other;
@@ -43,17 +45,20 @@ public:
         } else if (const auto* circle = std::get_if<Circle>(&operation)) {
             add_circle(*circle, style);
         } else if (const auto* travel = std::get_if<Travel>(&operation)) {
-            travels_ += 'M';
-            append_point(travels_, travel->from.x, travel->from.y);
+            append_move(travels_, travel->from);
             travels_ += 'L';
             append_point(travels_, travel->to.x, travel->to.y);
             travel_mm_ += segment_mm(travel->from, travel->to);
+        } else if (const auto* wipe = std::get_if<Wipe>(&operation)) {
+            add_wipe(*wipe);
         }
     }
 
     const std::vector<Group>& groups() const { return groups_; }
     const std::string& travels() const { return travels_; }
+    const std::string& wipes() const { return wipes_; }
     double travel_mm() const { return travel_mm_; }
+    double wipe_mm() const { return wipe_mm_; }
     const std::array<double, role_count>& length_mm() const { return length_mm_; }
 
 private:
@@ -72,11 +77,15 @@ private:
         append_mm(out, y, quantum_);
     }
 
+    void append_move(std::string& out, const Point& point) const {
+        out += 'M';
+        append_point(out, point.x, point.y);
+    }
+
     // The pen goes to a point without drawing, unless it is there.
     void reach(const Point& point, Group& group) {
         if (drawing_ && point.x == at_.x && point.y == at_.y) return;
-        group.path += 'M';
-        append_point(group.path, point.x, point.y);
+        append_move(group.path, point);
     }
 
     void moved(const Point& to, double length_mm, const PathStyle& style) {
@@ -93,16 +102,32 @@ private:
     void add_arc(const Arc& arc, const PathStyle& style) {
         Group& group = group_of(style);
         reach(arc.from, group);
+        moved(arc.to, append_arc(group.path, arc), style);
+    }
+
+    // Its length in mm.
+    double append_arc(std::string& out, const Arc& arc) const {
         const ArcShape shape = arc_shape(arc);
         std::string radius;
         append_number(radius, shape.radius * quantum_.mm(1));
         const bool large = std::abs(shape.sweep_rad) > std::numbers::pi;
-        group.path += 'A' + radius + ' ' + radius + " 0 ";
-        group.path += large ? '1' : '0';
+        out += 'A' + radius + ' ' + radius + " 0 ";
+        out += large ? '1' : '0';
         // The drawing's y points up, so that a positive angle is counter-clockwise.
-        group.path += shape.sweep_rad > 0 ? " 1 " : " 0 ";
-        append_point(group.path, arc.to.x, arc.to.y);
-        moved(arc.to, shape.length() * quantum_.mm(1), style);
+        out += shape.sweep_rad > 0 ? " 1 " : " 0 ";
+        append_point(out, arc.to.x, arc.to.y);
+        return shape.length() * quantum_.mm(1);
+    }
+
+    void add_wipe(const Wipe& wipe) {
+        append_move(wipes_, wipe.from);
+        if (wipe.sagitta != 0) {
+            wipe_mm_ += append_arc(wipes_, Arc{wipe.from, wipe.to, wipe.sagitta});
+        } else {
+            wipes_ += 'L';
+            append_point(wipes_, wipe.to.x, wipe.to.y);
+            wipe_mm_ += segment_mm(wipe.from, wipe.to);
+        }
     }
 
     void add_circle(const Circle& circle, const PathStyle& style) {
@@ -121,8 +146,8 @@ private:
 
     Quantum quantum_;
     std::vector<Group> groups_;
-    std::string travels_;
-    double travel_mm_ = 0;
+    std::string travels_, wipes_;
+    double travel_mm_ = 0, wipe_mm_ = 0;
     std::array<double, role_count> length_mm_{};
     Point at_;
     bool drawing_ = false;
@@ -172,7 +197,19 @@ std::string strokes_text(const Strokes& strokes, const SvgOptions& options, doub
                std::string(travel_color) + "\" stroke-width=\"" + width + "\" stroke-dasharray=\"" +
                dash + "\" stroke-linecap=\"butt\"/>\n";
     }
+    if (options.travels && !strokes.wipes().empty()) {
+        std::string width;
+        append_number(width, wipe_width * thin_mm);
+        out += "<path id=\"wipes\" d=\"" + strokes.wipes() + "\" stroke=\"" +
+               std::string(wipe_color) + "\" stroke-width=\"" + width + "\"/>\n";
+    }
     return out + "</g>\n";
+}
+
+// Of an object, if it has a name, else of the file's source.
+std::string name_of(const Metadata& metadata, std::uint32_t object) {
+    const bool is_named = object > 0 && object <= metadata.objects.size();
+    return is_named ? metadata.objects[object - 1] : metadata.source_name;
 }
 
 PageFrame frame_of(const Reader& reader) {
@@ -191,6 +228,7 @@ Result<std::string> layer_svg(Reader& reader, std::uint32_t layer, const SvgOpti
     if (Status sought = reader.seek_layer(layer); !sought) return sought.error();
     Strokes strokes(reader.header().quantum);
     Layer shown;
+    bool of_several = false;
     for (bool begun = false;;) {
         const Result<std::optional<Operation>> next = reader.next();
         if (!next) return next.error();
@@ -200,9 +238,12 @@ Result<std::string> layer_svg(Reader& reader, std::uint32_t layer, const SvgOpti
             begun = true;
             shown = reader.layer();
         }
+        if (const auto* object = std::get_if<Object>(&**next))
+            of_several = of_several || object->object != shown.state.object;
         strokes.add(**next, reader.path());
     }
-    PageContent content{shown.index, reader.header(), shown, {}, {}};
+    const std::string name = name_of(reader.header().metadata, of_several ? 0 : shown.state.object);
+    PageContent content{shown.index, reader.header(), shown, name, {}, {}};
     for (std::size_t i = 0; i < role_count; ++i)
         if (strokes.length_mm()[i] > 0)
             content.legend.push_back({std::string(name_of(static_cast<Role>(i))),
@@ -210,6 +251,8 @@ Result<std::string> layer_svg(Reader& reader, std::uint32_t layer, const SvgOpti
                                       strokes.length_mm()[i], false});
     if (options.travels && strokes.travel_mm() > 0)
         content.legend.push_back({"travel", std::string(travel_color), strokes.travel_mm(), true});
+    if (options.travels && strokes.wipe_mm() > 0)
+        content.legend.push_back({"wipe", std::string(wipe_color), strokes.wipe_mm(), false});
     const PageFrame frame = frame_of(reader);
     content.drawing = strokes_text(strokes, options, thin_line_mm(frame));
     return page_text(frame, content);

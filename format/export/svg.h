@@ -20,7 +20,7 @@
 namespace lyr::format {
 
 struct SvgOptions {
-    bool travels = true;  // motions without extrusion, thin and dashed
+    bool travels = true;  // motions without extrusion, thin and dashed; wipes in red
 };
 
 // Of the layer with this number (from 0). Leaves the reader behind the layer. Errors: the reader's.

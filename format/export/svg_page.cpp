@@ -114,7 +114,7 @@ private:
     }
 
     std::string subtitle() const {
-        std::string text = escaped_xml(content_.header.metadata.source_name);
+        std::string text = escaped_xml(content_.name);
         if (!text.empty()) text += ", ";
         return text + number(content_.shown.state.height_mm) + " mm thick";
     }

@@ -26,11 +26,12 @@ struct PageContent {
     std::uint32_t layer = 0;  // from 0
     const FileHeader& header;
     const Layer& shown;
+    std::string name;  // of what is shown
     std::vector<LegendEntry> legend;
     std::string drawing;  // SVG elements, y already pointing down
 };
 
-inline constexpr std::string_view travel_color = "#3a3f44";
+inline constexpr std::string_view travel_color = "#3a3f44", wipe_color = "#c0392b";
 
 // "#rrggbb" towards black.
 std::string darker(std::string_view color);

@@ -2,6 +2,7 @@
 
 #include "target/moves/move_maker.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -78,6 +79,7 @@ std::span<const Instruction> MoveMaker::take(const format::Operation& operation,
             travel_acceleration_mm_s2_ = acceleration.acceleration_mm_s2;
         },
         [&](const format::Retract& retract) { draw_back(retract.depth_mm); },
+        [&](const format::Wipe& piece) { wipe(piece); },
         [&](const format::Dwell& dwell) { made_[count_++] = Rest{dwell.time_ms / ms_per_s}; },
         [](const auto&) {}};
     std::visit(calls, operation);
@@ -115,6 +117,24 @@ void MoveMaker::draw_back(double depth_mm) {
     drawn_back_mm_ = depth_mm;
     append(motion::Line{at_, at_, feed_mm},
            feed_mm < 0 ? retract_speed_mm_s_ : unretract_speed_mm_s_, 0);
+}
+
+void MoveMaker::wipe(const format::Wipe& wipe) {
+    motion::Path path =
+        motion::arc_through(at_, position(wipe.to), quantum_.mm(wipe.sagitta), no_advance);
+    const double length_mm = motion::length_of(path);
+    const double before_mm = drawn_back_mm_.value_or(wipe.depth_mm);
+    // A further piece would be a quantum long.
+    const bool is_last = wipe.left_mm - length_mm < quantum_.mm(1) / 2;
+    const double share = is_last ? 1 : length_mm / wipe.left_mm;
+    const double feed_mm = share * (before_mm - wipe.depth_mm);
+    drawn_back_mm_ = is_last ? wipe.depth_mm : before_mm - feed_mm;
+    const double own_mm_s = feed_mm < 0 ? retract_speed_mm_s_ : unretract_speed_mm_s_;
+    const double speed_mm_s =
+        feed_mm == 0 ? travel_speed_mm_s_
+                     : std::min(travel_speed_mm_s_, own_mm_s * length_mm / std::abs(feed_mm));
+    std::visit([&](auto& shape) { shape.advance_mm = feed_mm; }, path);
+    append(path, speed_mm_s, travel_acceleration_mm_s2_);
 }
 
 void MoveMaker::append(const motion::Path& path, double speed_mm_s, double acceleration_mm_s2) {

@@ -6,7 +6,8 @@
 //  1. Every motion becomes one move; the way to a layer's start becomes two, z first if it rises and
 //     last if it sinks. Motions of no length and without filament become none.
 //  2. A move's filament is its length times the path's cross-section over that of the filament. Drawing
-//     the filament back and forth is a move of the extruder alone, at the layer's retraction speeds.
+//     the filament back and forth is a move of the extruder alone, at the layer's retraction speeds. A piece of a wipe
+//     is gone along at travel speed, or slower, so that the filament is drawn back no faster than that.
 //  3. A move's tag is the layer's number from 1.
 //  4. Temperatures, fans, tools and pauses are passed over.
 
@@ -69,6 +70,7 @@ private:
     void extrude(motion::Path path, const format::PathStyle& style);
     void travel_to(const motion::Point& to);
     void draw_back(double depth_mm);
+    void wipe(const format::Wipe& wipe);
     void append(const motion::Path& path, double speed_mm_s, double acceleration_mm_s2);
 
     format::Quantum quantum_;

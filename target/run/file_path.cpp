@@ -108,15 +108,36 @@ void FilePath::visit(const format::Pause&) {
     ++demands_.pauses;
 }
 
-// Through the ends and the middle of the arc, which lies off the chord's middle by the sagitta, to the
-// right of the way if that is positive.
 void FilePath::visit(const format::Arc& arc) {
+    turn(bent(arc.from, arc.to, arc.sagitta), arc.to);
+}
+
+// Shares the rest of the way to the depth out by length.
+void FilePath::visit(const format::Wipe& wipe) {
+    PathCurve curve;
+    if (wipe.sagitta != 0) curve = bent(wipe.from, wipe.to, wipe.sagitta);
+    curve.from_mm = at_mm_;
+    curve.to_mm = position(wipe.to);
+    const double way_mm = length_mm(curve);
+    totals_.travelled_mm += way_mm;
+    // All the rest on the last piece: what is less than a quantum longer is so by rounding.
+    const bool is_last = wipe.left_mm - way_mm < quantum_.mm(1) / 2;
+    const double due_mm = wipe.depth_mm - drawn_back_mm_;
+    const double drawn_mm = is_last ? due_mm : due_mm * way_mm / wipe.left_mm;
+    drawn_back_mm_ = is_last ? wipe.depth_mm : drawn_back_mm_ + drawn_mm;
+    curve.to_mm[axis_e] = fed_mm(-drawn_mm);
+    append(curve);
+}
+
+// The middle lies off the chord's middle by the sagitta, to the right of the way if that is positive.
+PathCurve FilePath::bent(const format::Point& from, const format::Point& to,
+                         std::int64_t sagitta) const {
     const double quantum_mm = quantum_.mm(1);
     const double dx = at_mm_[axis_x], dy = at_mm_[axis_y];
-    const double bx = static_cast<double>(arc.to.x - arc.from.x) * quantum_mm;
-    const double by = static_cast<double>(arc.to.y - arc.from.y) * quantum_mm;
+    const double bx = static_cast<double>(to.x - from.x) * quantum_mm;
+    const double by = static_cast<double>(to.y - from.y) * quantum_mm;
     const double chord_mm = std::hypot(bx, by);
-    const double sagitta_mm = static_cast<double>(arc.sagitta) * quantum_mm;
+    const double sagitta_mm = static_cast<double>(sagitta) * quantum_mm;
     const double mx = bx / 2 + sagitta_mm * by / chord_mm;
     const double my = by / 2 - sagitta_mm * bx / chord_mm;
     // Circumcentre of the triangle (0, 0), (bx, by), (mx, my).
@@ -131,10 +152,10 @@ void FilePath::visit(const format::Arc& arc) {
     curve.radius_mm = std::hypot(cx, cy);
     curve.start_angle_rad = std::atan2(-cy, -cx);
     double sweep_rad = std::atan2(by - cy, bx - cx) - curve.start_angle_rad;
-    if (arc.sagitta > 0 && sweep_rad <= 0) sweep_rad += 2 * pi;
-    if (arc.sagitta < 0 && sweep_rad >= 0) sweep_rad -= 2 * pi;
+    if (sagitta > 0 && sweep_rad <= 0) sweep_rad += 2 * pi;
+    if (sagitta < 0 && sweep_rad >= 0) sweep_rad -= 2 * pi;
     curve.sweep_rad = sweep_rad;
-    turn(curve, arc.to);
+    return curve;
 }
 
 void FilePath::visit(const format::Circle& circle) {

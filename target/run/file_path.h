@@ -52,6 +52,7 @@ private:
     void visit(const format::Circle& circle);
     void visit(const format::Travel& travel);
     void visit(const format::Retract& retract);
+    void visit(const format::Wipe& wipe);
     void visit(const format::Temperature& temperature);
     void visit(const format::Fan& fan);
     void visit(const format::Tool& tool);
@@ -61,6 +62,8 @@ private:
     void visit(const Other&) {}
 
     AxisValues position(const format::Point& point) const;
+    // The circle through an arc's ends and its middle.
+    PathCurve bent(const format::Point& from, const format::Point& to, std::int64_t sagitta) const;
     void draw_back(double depth_mm);
     void straight(const AxisValues& to_mm, bool extrudes);
     void turn(PathCurve curve, const format::Point& to);

@@ -26,7 +26,9 @@ void PlanCheck::append(const motion::PlannedMove& move) {
     Piece& piece = pieces_.emplace_back();
     piece.move = move;
     piece.e_start_mm = e_end_mm_;
-    e_end_mm_ += motion::advance_of(move.path);
+    const double due_mm = motion::advance_of(move.path) - e_error_mm_;
+    e_end_mm_ = piece.e_start_mm + due_mm;
+    e_error_mm_ = (e_end_mm_ - piece.e_start_mm) - due_mm;
     if (const auto* arc = std::get_if<motion::Arc>(&move.path)) {
         constexpr double quarter_rad = std::numbers::pi / 2;
         const double sign = arc->sweep_rad < 0 ? -1 : 1;

@@ -51,6 +51,8 @@ private:
     std::deque<Shift> shifts_;
     std::int64_t shift_ns_ = 0;
     double e_end_mm_ = 0;  // where the last piece leaves the extruder
+    double e_error_mm_ =
+        0;  // of that sum; hundreds of thousands of roundings would be parts of a step
     AxisValues deviation_steps_{};
 };
 

@@ -262,6 +262,21 @@ TEST_CASE("reader: a layer's state and totals are those of its operations") {
         extruded += length;
         volume += length * quantum.mm(1) * cross_section_mm2(reader->path());
     };
+    // Its end and its outermost points, by its angles.
+    const auto reach_round = [&](const Arc& arc) {
+        reach(arc.to);
+        const ArcShape shape = arc_shape(arc);
+        for (int side = -8; side <= 8; ++side) {
+            const double angle = side * std::numbers::pi / 2;
+            const double along = (angle - shape.start_angle_rad) / shape.sweep_rad;
+            if (along < 0 || along > 1) continue;
+            const double x = shape.center_x + shape.radius * std::round(std::cos(angle));
+            const double y = shape.center_y + shape.radius * std::round(std::sin(angle));
+            const bool across = side % 2 == 0;
+            reach({across ? std::llround(x) : arc.from.x, across ? arc.from.y : std::llround(y),
+                   arc.from.z});
+        }
+    };
     while (const Operation* operation = reader->read()) {
         if (const auto* start = std::get_if<LayerStart>(operation)) {
             check();
@@ -278,20 +293,14 @@ TEST_CASE("reader: a layer's state and totals are those of its operations") {
                                     travel->to.z - travel->from.z);
             reach(travel->to);
         } else if (const auto* arc = std::get_if<Arc>(operation)) {
-            const ArcShape shape = arc_shape(*arc);
-            extrude(shape.length(), arc->from, arc->to);
-            reach(arc->to);
-            // The arc's outermost points, by its angles.
-            for (int side = -8; side <= 8; ++side) {
-                const double angle = side * std::numbers::pi / 2;
-                const double along = (angle - shape.start_angle_rad) / shape.sweep_rad;
-                if (along < 0 || along > 1) continue;
-                const double x = shape.center_x + shape.radius * std::round(std::cos(angle));
-                const double y = shape.center_y + shape.radius * std::round(std::sin(angle));
-                const bool across = side % 2 == 0;
-                reach({across ? std::llround(x) : arc->from.x,
-                       across ? arc->from.y : std::llround(y), arc->from.z});
-            }
+            extrude(arc_shape(*arc).length(), arc->from, arc->to);
+            reach_round(*arc);
+        } else if (const auto* wipe = std::get_if<Wipe>(operation)) {
+            const Arc bent{wipe->from, wipe->to, wipe->sagitta};
+            const bool is_line = wipe->sagitta == 0;
+            travelled += is_line ? std::hypot(wipe->to.x - wipe->from.x, wipe->to.y - wipe->from.y)
+                                 : arc_shape(bent).length();
+            is_line ? reach(wipe->to) : reach_round(bent);
         } else if (const auto* circle = std::get_if<Circle>(operation)) {
             const double radius =
                 std::hypot(circle->from.x - circle->center_x, circle->from.y - circle->center_y);

@@ -54,6 +54,13 @@ struct Comparison {
         CHECK(std::abs(static_cast<double>(o.sagitta)) <= widest_sagitta_per_chord * chord);
         CHECK(std::abs(static_cast<double>(o.sagitta) - q(expected.a)) <= 2.5);
     }
+    void operator()(const Wipe& o) const {
+        end(o.to, 0.71);
+        CHECK(std::abs(static_cast<double>(o.sagitta) - q(expected.a)) <= 2.5);
+        near(o.depth_mm, expected.b, 1e-3);
+        CHECK(o.left_mm >=
+              quantum.mm(1) * std::hypot(o.to.x - o.from.x, o.to.y - o.from.y) * (1 - 1e-9));
+    }
     void operator()(const Circle& o) const {
         end(o.to, 1.5);  // may follow a hatch
         CHECK(o.counter_clockwise == expected.flag);

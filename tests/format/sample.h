@@ -73,7 +73,7 @@ private:
     }
 
     void call() {
-        switch (pick(12)) {
+        switch (pick(13)) {
             case 0:
             case 1:
             case 2:
@@ -90,6 +90,8 @@ private:
                 return hatch();
             case 9:
                 return path();
+            case 10:
+                return wipe();
             default:
                 return setting();
         }
@@ -134,6 +136,24 @@ private:
         climbs ? encoder_.arc_to(x_mm_, y_mm_, z_mm_, sagitta)
                : encoder_.arc_to(x_mm_, y_mm_, sagitta);
         expected.push_back({kind_of<Arc>(), x_mm_, y_mm_, z_mm_, sagitta, 0, false});
+    }
+
+    // Nothing is extruded until the head has travelled on.
+    void wipe() {
+        std::vector<WipePiece> pieces;
+        const double depth = 0.1 * pick(30);
+        for (int left = 1 + pick(4); left > 0; --left) {
+            const double x = x_mm_, y = y_mm_;
+            move_near(20 * quantum_.mm(1));
+            const double chord = std::hypot(x_mm_ - x, y_mm_ - y);
+            const double sagitta = pick(2) ? chord * uniform(0.3, 1.1) * (pick(2) ? 1 : -1) : 0;
+            pieces.push_back({x_mm_, y_mm_, sagitta});
+            expected.push_back({kind_of<Wipe>(), x_mm_, y_mm_, z_mm_, sagitta, depth, false});
+        }
+        encoder_.wipe(pieces, depth);
+        encoder_.retract_to(depth);
+        expect<Retract>(depth);
+        travel();
     }
 
     void circle() {

@@ -176,7 +176,7 @@ TEST_CASE(
     Options options;
     options.profile.layer.height_mm = options.profile.layer.first_height_mm = 0.4;
     options.profile.support.kind = profile::SupportKind::tree;
-    options.profile.plate.copies = 2;
+    options.profile.layer.adaptive = true;
     Diagnostics diagnostics;
     const auto model = load(parts + "cuboid.step", options, diagnostics);
     REQUIRE(model);
@@ -189,7 +189,7 @@ TEST_CASE(
     REQUIRE(print_it());
     REQUIRE(diagnostics.size() == 2);
     CHECK(diagnostics[0].message.find("support.kind") == 0);
-    CHECK(diagnostics[1].message.find("plate.copies") == 0);
+    CHECK(diagnostics[1].message.find("layer.adaptive") == 0);
     options.profile.plate.size_mm = {10, 10};
     const auto refused = print_it();
     REQUIRE(!refused);

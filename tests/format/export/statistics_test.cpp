@@ -1,11 +1,12 @@
 // The figures of a file add up.
 
+#include "format/export/statistics.h"
+
 #include <doctest/doctest.h>
 
 #include "../files.h"
 #include "../sample.h"
 #include "../worked_example.h"
-#include "format/export/statistics.h"
 
 using namespace lyr;
 using namespace lyr::format;
@@ -39,7 +40,7 @@ TEST_CASE("statistics 1: all operations and all bytes are counted once") {
     CHECK(s.bytes == std::filesystem::file_size(path));
     std::uint64_t bytes = 0, given = 0;
     for (const KindStatistics* kind : {&s.lines, &s.arcs, &s.circles, &s.hatch_lines, &s.travels,
-                                       &s.paths, &s.settings, &s.layer_heads, &s.rest}) {
+                                       &s.wipes, &s.paths, &s.settings, &s.layer_heads, &s.rest}) {
         bytes += kind->bytes;
         given += kind->count;
     }
@@ -92,7 +93,7 @@ TEST_CASE("statistics 2: the figures of the worked example, and its text") {
     const PathStyle style{Role::outer_wall, 0.45, 0.2, 1, 60, 0};
     CHECK(outer.volume_mm3 == doctest::Approx(wall * cross_section_mm2(style)));
     const std::string text = to_text(s, "part.lyr");
-    for (const char* part : {"part.lyr: .lyr 1.0, 415 bytes, whole\n", "plate.step",
+    for (const char* part : {"part.lyr: .lyr 1.1, 415 bytes, whole\n", "plate.step",
                              "layers        1, z 0.200 to 0.200 mm, 0.2 mm thick",
                              "x 10.000 to 25.000, y 10.000 to 20.000", "outer wall", "solid infill",
                              "nozzle 210, bed 60"})

@@ -94,3 +94,34 @@ TEST_CASE("plan check 2: steps that are late, missing, doubled or turned round a
     CHECK(worst(all.moves, {}) > 100);
     CHECK(worst({}, all.steps) > 100);
 }
+
+TEST_CASE("plan check 1: the filament of very many moves adds up without drifting") {
+    // A step each, behind a hundred metres: every sum is rounded the same way.
+    constexpr double far_mm = 1e5, step_mm = 0.0025, slow_mm_s = 0.5;
+    constexpr int moves = 20'000;
+    motion::Limits limits;
+    for (motion::AxisLimits& axis : limits.axes) axis = {1e6, 1e8};
+    auto planner = motion::Planner::create(limits);
+    REQUIRE(planner.ok());
+    PlanCheck check(steps_per_mm, {});
+    StepPositions at{};
+    const auto plan = [&](double advance_mm) {
+        REQUIRE(planner->push({motion::Line{{}, {}, advance_mm}, slow_mm_s}).ok());
+        planner->flush();
+        motion::PlannedMove planned;
+        REQUIRE(planner->pop(planned));
+        check.expect({&planned, 1}, {});
+        return planned;
+    };
+    plan(far_mm);
+    at[motion::axis_e] = std::llround(far_mm / step_mm);
+    for (int i = 0; i < moves; ++i) {
+        const motion::PlannedMove move = plan(step_mm);
+        const double middle_ns = move.profile.time_at(step_mm / 2) * 1e9 + move.start_part_ns;
+        check.step({move.start_ns + std::llround(middle_ns), motion::axis_e, at, true});
+        ++at[motion::axis_e];
+    }
+    check.finish(at);
+    CHECK(check.deviation_steps()[motion::axis_e] > 0.499);
+    CHECK(check.deviation_steps()[motion::axis_e] < 0.50001);
+}

@@ -132,17 +132,41 @@ inline void draw_climb(const Pen& pen) {
     pen.line(0, 0);
 }
 
+// Wipes along lines and arcs, from not retracted and from half, and a layer that ends with one.
+inline void draw_wipes(const Pen& pen) {
+    pen.path();
+    const auto wipe = [&](std::initializer_list<format::WipePiece> pieces, double depth_mm) {
+        std::vector<format::WipePiece> placed;
+        for (const auto& [x, y, sagitta] : pieces)
+            placed.push_back({pen.frame.x(x, y), pen.frame.y(x, y), pen.frame.sagitta(sagitta)});
+        pen.layer.wipe(placed, depth_mm);
+        pen.layer.retract_to(depth_mm);
+    };
+    pen.travel(0, 0);
+    pen.arc(10, 0, 3);
+    wipe({{6, -2.9, -0.3}, {5, -3, 0}}, 0.8);
+    pen.travel(0, 20);
+    pen.layer.unretract();
+    pen.line(8, 20);
+    pen.layer.retract_to(0.3);
+    wipe({{4, 20, 0}, {4, 20.01, 0}, {4.002, 20.01, 0}, {4, 24, -2.1}}, 0.8);
+    const auto rise = static_cast<double>(pen.layer.position().z) * 1e-3 + 0.4;
+    pen.layer.travel_to(pen.frame.x(4, 24), pen.frame.y(4, 24), rise);
+    pen.layer.travel_to(pen.frame.x(0, 0), pen.frame.y(0, 0), rise - 0.4);
+    pen.layer.unretract();
+    pen.circle(5, 0, false);
+    wipe({{5, 5, -5 * (1 - std::cos(std::numbers::pi / 4))}}, 0.8);
+}
+
 struct Case {
     const char* name;
     Drawing drawing;
 };
 
 inline const std::vector<Case>& all_cases() {
-    static const std::vector<Case> cases{{"square", draw_square},
-                                         {"circles", draw_circles},
-                                         {"arcs", draw_arcs},
-                                         {"hatch", draw_hatch},
-                                         {"climb", draw_climb}};
+    static const std::vector<Case> cases{{"square", draw_square}, {"circles", draw_circles},
+                                         {"arcs", draw_arcs},     {"hatch", draw_hatch},
+                                         {"climb", draw_climb},   {"wipes", draw_wipes}};
     return cases;
 }
 
