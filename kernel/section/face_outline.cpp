@@ -1,0 +1,87 @@
+#include "kernel/section/face_outline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace lyr {
+namespace {
+
+constexpr double full_turn_rad = 2 * std::numbers::pi;
+
+// Steps that cut an edge into outline points: 48 a turn of a circle keeps them an eighth of a turn apart six times
+// over. A B-spline gets as many for each bend that its control points can make; long ones bend less between two.
+constexpr int steps_per_turn = 48;
+constexpr int steps_per_control_point = 8, fully_stepped_points = 16;
+
+}  // namespace
+
+int outline_steps(const Edge& edge) {
+    if (std::holds_alternative<Line>(edge.curve)) return 1;
+    if (const auto* spline = std::get_if<BSplineCurve>(&edge.curve)) {
+        const int points = static_cast<int>(spline->control_points.size());
+        const int full = std::min(points, fully_stepped_points);
+        return steps_per_control_point * full + points - full;
+    }
+    return steps_per_turn;
+}
+
+void append_outline(const Edge& edge, bool reversed, int steps, std::vector<Point3>& points) {
+    const double from = reversed ? edge.t_end : edge.t_start;
+    const double to = reversed ? edge.t_start : edge.t_end;
+    for (int i = 0; i < steps; ++i) {
+        points.push_back(evaluate(edge.curve, from + (to - from) * i / steps));
+    }
+}
+
+std::vector<Coedge> bounding_coedges(const Model& model, const Face& face) {
+    std::vector<Coedge> all;
+    std::vector<std::pair<EdgeId, bool>> keys;
+    for (std::uint32_t l = 0; l < face.loop_count; ++l) {
+        const Loop& loop = model.loops[face.first_loop + l];
+        for (std::uint32_t c = 0; c < loop.coedge_count; ++c) {
+            all.push_back(model.coedges[loop.first_coedge + c]);
+            keys.emplace_back(all.back().edge, all.back().reversed);
+        }
+    }
+    std::sort(keys.begin(), keys.end());
+    std::erase_if(all, [&](const Coedge& coedge) {
+        return std::binary_search(keys.begin(), keys.end(),
+                                  std::pair(coedge.edge, !coedge.reversed));
+    });
+    return all;
+}
+
+std::vector<Point2> parameters_along(const Surface& surface, const std::vector<Point3>& points) {
+    const auto* spline = std::get_if<SharedBSplineSurface>(&surface);
+    std::vector<Point2> result;
+    for (const Point3& point : points) {
+        const std::size_t n = result.size();
+        // Searched for once; from there on, points follow each other evenly, but for the corners.
+        if (!spline || n == 0) {
+            result.push_back(invert(surface, point));
+        } else {
+            const Point2 guess = n > 1 ? Point2(2 * result[n - 1] - result[n - 2]) : result[n - 1];
+            result.push_back(invert_near(**spline, point, guess));
+        }
+    }
+    return result;
+}
+
+std::array<double, 2> parameter_periods(const Surface& surface) {
+    if (std::holds_alternative<Torus>(surface)) return {full_turn_rad, full_turn_rad};
+    if (std::holds_alternative<Cylinder>(surface) || std::holds_alternative<Cone>(surface)) {
+        return {full_turn_rad, 0};
+    }
+    const auto* spline = std::get_if<SharedBSplineSurface>(&surface);
+    if (!spline) return {0, 0};
+    const BSplineSurface& s = **spline;
+    return {s.closed_u ? s.end_u() - s.start_u() : 0, s.closed_v ? s.end_v() - s.start_v() : 0};
+}
+
+double short_way(double difference, double period) {
+    return period > 0 ? difference - period * std::round(difference / period) : difference;
+}
+
+}  // namespace lyr
