@@ -10,6 +10,7 @@
 #include "format/writer.h"
 #include "kernel/brep/placement.h"
 #include "kernel/toolpath/layer_order.h"
+#include "slicer/adaptive.h"
 #include "slicer/bounds.h"
 #include "slicer/encode.h"
 #include "slicer/layers.h"
@@ -60,7 +61,6 @@ void warn_of_missing(const profile::Profile& profile, Diagnostics& diagnostics) 
     };
     warn(profile.support.kind != profile::SupportKind::none, "support.kind");
     warn(profile.adhesion.kind == profile::AdhesionKind::raft, "adhesion.kind = raft");
-    warn(profile.layer.adaptive, "layer.adaptive");
     warn(profile.travel.wipe_mm > 0, "travel.wipe");
     warn(profile.plate.copies > 1, "plate.copies");
     warn(profile.plate.sequential, "plate.sequential");
@@ -249,7 +249,7 @@ Result<Summary> print(Model model, const std::string& source_name, const std::st
     if (Status checked = check_plate(summary.box, options.profile.plate); !checked)
         return checked.error();
     warn_of_missing(options.profile, diagnostics);
-    const auto spans = layer_spans(summary.box.sizes().z(), options.profile.layer);
+    const auto spans = planned_layers(placed, options, summary, diagnostics);
     auto writer = format::Writer::create(lyr_path, quantum_for(options.tolerance()),
                                          metadata(source_name, options));
     if (!writer) return writer.error();
