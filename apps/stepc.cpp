@@ -99,9 +99,10 @@ void add_cusp(CLI::App& app, Arguments& arguments) {
         arguments.settings.settings.push_back({"layer.cusp", value, "--cusp"});
         return std::optional<std::string>();
     };
-    add_text(app, "--cusp", "MM", take,
-             "Layers as thick as steps of this depth allow; short for --set layer.adaptive=true "
-             "layer.cusp=MM");
+    add_text(
+        app, "--cusp", "MM", take,
+        "Layers as thick as steps of this depth allow; short for --set layer.adaptive=true --set "
+        "layer.cusp=MM");
 }
 
 void add_settings(CLI::App& app, Arguments& arguments) {
