@@ -2,7 +2,7 @@
 // and a its rise, normal and height are
 //
 //   cylinder  n = l c                      z = o + r l c + v a
-//   cone      n = cos(t) l c - sin(t) a    z = o + r l c + v (a + tan(t) l c)
+//   cone      n = cos(t) l c - sin(t) a    z = o' + (v - v') (a + tan(t) l c)    o' and v' of the apex
 //   torus     n = cos(v) l c + sin(v) a    z = o + (R + r cos(v)) l c + r sin(v) a
 //
 // and bounds of them follow from those of c, cos(v) and sin(v).
@@ -98,13 +98,12 @@ RoundCell::Terms RoundCell::terms() const {
                     {width(up), 0},
                     {f.radius_mm * width(up), std::abs(f.rise) * width(v)}};
         case Form::Kind::cone: {
-            const double slope = f.sine / f.cosine;
-            const Interval along = f.rise + slope * up;
-            const Interval radius = f.radius_mm + slope * v;
+            const double slope = f.sine / f.cosine, apex = -f.radius_mm / slope;
+            const Interval along = f.rise + slope * up, from_apex = -apex + v;
             return {-f.sine * f.rise + f.cosine * up,
-                    f.radius_mm * up + v * along,
+                    f.rise * apex + from_apex * along,
                     {width(up), 0},
-                    {magnitude(radius) * width(up), magnitude(along) * width(v)}};
+                    {slope * magnitude(from_apex) * width(up), magnitude(along) * width(v)}};
         }
         case Form::Kind::torus:
             break;
