@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "kernel/geometry/tolerance.h"
 #include "kernel/section/containment.h"
 #include "kernel/section/face_outline.h"
 #include "kernel/section/parameter_cell.h"
@@ -39,6 +40,16 @@ constexpr int most_halvings = 100;
 // Of one face. The largest of thousands of real files take a tenth; beyond, bounds hold but are not close.
 constexpr std::size_t most_divided = std::size_t{1} << 20;
 
+// At an apex or a pole all values of a parameter are the same point: an edge that ends there has its neighbour's.
+void keep_near(const Surface& surface, Point2& uv, const Point2& neighbour) {
+    const Point3 point = evaluate(surface, uv);
+    for (const Eigen::Index k : {0, 1}) {
+        Point2 other = uv;
+        other[k] = neighbour[k];
+        if ((evaluate(surface, other) - point).norm() <= resolution_mm) uv = other;
+    }
+}
+
 // A stretch of the boundary lies in each. Through a seam, a box runs on beyond the period.
 std::vector<CellRect> boundary_boxes(const Model& model, const Face& face) {
     const auto period = parameter_periods(face.surface);
@@ -52,7 +63,9 @@ std::vector<CellRect> boundary_boxes(const Model& model, const Face& face) {
         std::vector<Point3> points;
         append_outline(edge, coedge.reversed, 2 * outline_steps(edge), points);
         points.push_back(evaluate(edge.curve, coedge.reversed ? edge.t_start : edge.t_end));
-        const std::vector<Point2> uv = parameters_along(face.surface, points);
+        std::vector<Point2> uv = parameters_along(face.surface, points);
+        keep_near(face.surface, uv.front(), uv[1]);
+        keep_near(face.surface, uv.back(), uv[uv.size() - 2]);
         for (std::size_t i = 0; i + 2 < uv.size(); i += 2) {
             const Point2 middle = uv[i] + step(uv[i], uv[i + 1]);
             const Point2 end = middle + step(middle, uv[i + 2]);
