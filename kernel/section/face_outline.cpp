@@ -1,7 +1,6 @@
 #include "kernel/section/face_outline.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <utility>
 
@@ -78,10 +77,6 @@ std::array<double, 2> parameter_periods(const Surface& surface) {
     if (!spline) return {0, 0};
     const BSplineSurface& s = **spline;
     return {s.closed_u ? s.end_u() - s.start_u() : 0, s.closed_v ? s.end_v() - s.start_v() : 0};
-}
-
-double short_way(double difference, double period) {
-    return period > 0 ? difference - period * std::round(difference / period) : difference;
 }
 
 }  // namespace lyr

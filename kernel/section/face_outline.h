@@ -7,6 +7,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "kernel/brep/model.h"
@@ -29,6 +30,8 @@ std::vector<Point2> parameters_along(const Surface& surface, const std::vector<P
 std::array<double, 2> parameter_periods(const Surface& surface);
 
 // The shorter of the two ways round.
-double short_way(double difference, double period);
+inline double short_way(double difference, double period) {
+    return period > 0 ? difference - period * std::round(difference / period) : difference;
+}
 
 }  // namespace lyr

@@ -37,7 +37,8 @@ constexpr double lowest_share = 1.0 / 8;
 // Halvings of a whole surface down to round-off, in either parameter.
 constexpr int most_halvings = 100;
 
-// Of one face. The largest of thousands of real files take a tenth; beyond, bounds hold but are not close.
+// Of one face. None of 63,025 faces of real files comes to more than an eighth of as many parts. Beyond, bounds hold but
+// are not close.
 constexpr std::size_t most_divided = std::size_t{1} << 20;
 
 // At an apex or a pole all values of a parameter are the same point: an edge that ends there has its neighbour's.
@@ -226,7 +227,7 @@ private:
             ++divided_ > most_divided)
             return take(bounds, is_whole);
         if (bounds.most <= (1 + cell_slack) * attained_.least(bounds.bottom_mm, bounds.top_mm))
-            return take(bounds, false);
+            return take(bounds, is_whole);
         auto halves = at.cell.halves(is_close ? CellMeasure::height : CellMeasure::flatness);
         std::array parts{entered(std::move(halves[0]), at.boxes, false),
                          entered(std::move(halves[1]), at.boxes, false)};

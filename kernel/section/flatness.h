@@ -5,7 +5,8 @@
 //
 // Contract
 //  1. Of every point of a face, but for those of contract 3, the parts have one that spans its height and is no less
-//     flat, or the point's flatness is at most FlatnessLimits::least.
+//     flat, or the point's flatness is at most FlatnessLimits::least. A face that bulges out of its loops by less than
+//     FlatnessLimits::height_mm in height may have none for the bulge.
 //  2. Parts are no flatter than the face by more than flatness_slack of it and reach no farther than
 //     FlatnessLimits::height_mm; so planes, spheres, and cylinders, cones and tori whose axis is upright or level. Those
 //     whose axis leans and free-form faces are, where their curvature radius is more than that height.
