@@ -98,6 +98,24 @@ struct TestCase {
     bool has_tip = false;  // a point where normals differ, and sections near it are short
 };
 
+// The same ball on a free-form surface, with a pole where its seam begins and one where it ends.
+Model freeform_ball(double radius) {
+    Model model = sphere(radius, true);
+    Frame meridian;
+    meridian.y = Vector3::UnitZ();
+    meridian.z = -Vector3::UnitY();
+    model.faces[0].surface = std::make_shared<const BSplineSurface>(
+        revolved(rational(Circle{meridian, radius}, -pi / 2, pi / 2), Frame{}));
+    return model;
+}
+
+// A ball's cap over z = -cut on a free-form surface: one loop, and the highest point inside.
+Model freeform_cap(double radius, double cut) {
+    Model model = cut_ball(radius, cut);
+    model.faces[0].surface = freeform_ball(radius).faces[0].surface;
+    return model;
+}
+
 std::vector<TestCase> solids() {
     std::vector<TestCase> all;
     all.push_back({"box", box(10, 20, 30)});
@@ -114,6 +132,8 @@ std::vector<TestCase> solids() {
     all.push_back({"halved torus", halved_torus(9, 3)});
     all.push_back({"spindle dome", spindle_dome(3, 5, 7, false), 6, 5, true});
     all.push_back({"hexagon under cone", hexagon_under_cone(10, 7, 12)});
+    all.push_back({"free-form ball", freeform_ball(7), 1, 1});
+    all.push_back({"free-form cap", freeform_cap(7, 3), 1, 1});
     all.push_back({"bent cube", bent_cube(BezierVolume(3, 12, 0.3, false, 5)), 1, 1});
     all.push_back({"rational bent cube", bent_cube(BezierVolume(2, 12, 0.3, true, 7)), 1, 1});
     return all;
@@ -195,6 +215,19 @@ TEST_CASE(
     for (const double z : {-3.0, 3.9}) check(cone_with_apex(6, 8, false), z, 0.6);
     CHECK(profile_of(box(1, 2, 3)).between(-5, 5) == 0);
     CHECK(profile_of(frustum(5, 5, 12, Side::halves)).between(-8, 8) == 0);
+}
+
+TEST_CASE("flatness 1: a free-form dome is level at its top, over its loops, too") {
+    for (const Model& model : {freeform_cap(7, -3), freeform_cap(7, 3), freeform_ball(7)}) {
+        const FlatnessProfile profile = profile_of(model);
+        CHECK(profile.between(6.999, 7) == 1);
+        CHECK(profile.between(7.001, 8) == 0);
+        for (const double z : {4.0, 5.0, 6.5, 6.9}) {
+            CAPTURE(z);
+            CHECK(at_height(profile, z) >= z / 7 - 1e-5);
+            CHECK(at_height(profile, z) <= (1 + flatness_slack) * (z + fine.height_mm) / 7);
+        }
+    }
 }
 
 TEST_CASE("flatness 3: level faces have a height and no parts") {
