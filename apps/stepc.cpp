@@ -49,6 +49,7 @@ constexpr Program program{
     "Examples:\n"
     "  stepc part.step -o part.lyr                        slice at 0.2 mm\n"
     "  stepc part.step -o part.lyr --layer-height 0.1     finer\n"
+    "  stepc part.step -o part.lyr --cusp 0.02            finer where the surface is flat\n"
     "  stepc part.step --profile petg --set perimeters.count=4   another material, more walls\n"
     "  stepc --profile petg --print-config                all settings, and where they come from\n"
     "  stepc part.step -o part.lyr --printer printer.toml     how long it takes on your own\n"
@@ -58,7 +59,8 @@ constexpr Program program{
     "\n"
     "Layer i is the section at its middle, (i - 1/2) x layer height over the bed; there are as "
     "many\n"
-    "layers as have their middle below the part's top.\n"
+    "layers as have their middle below the part's top. Adaptive layers end on level faces "
+    "instead.\n"
     "The summary goes to standard error where the print or the report goes to standard output.\n"
     "Exit status: 0 done, 2 options, 3 input, 4 not supported yet, 5 geometry, 6 output, 7 the "
     "printer\n"
@@ -90,6 +92,19 @@ void add_shorthand(CLI::App& app, Arguments& arguments, const std::string& optio
     add_text(app, option, shape, take, text + "; short for --set " + key + "=" + shape);
 }
 
+// How fine adaptive layers are, which it asks for.
+void add_cusp(CLI::App& app, Arguments& arguments) {
+    const auto take = [&arguments](const std::string& value) {
+        arguments.settings.settings.push_back({"layer.adaptive", "true", "--cusp"});
+        arguments.settings.settings.push_back({"layer.cusp", value, "--cusp"});
+        return std::optional<std::string>();
+    };
+    add_text(
+        app, "--cusp", "MM", take,
+        "Layers as thick as steps of this depth allow; short for --set layer.adaptive=true --set "
+        "layer.cusp=MM");
+}
+
 void add_settings(CLI::App& app, Arguments& arguments) {
     std::string built_in;
     for (const std::string& name : profile::built_in_names())
@@ -108,6 +123,7 @@ void add_settings(CLI::App& app, Arguments& arguments) {
     add_flag(app, "--print-config", arguments.print_config,
              "Show all settings with their origins, as a profile, and do no more");
     add_shorthand(app, arguments, "--layer-height", "MM", "layer.height", "Thickness of a layer");
+    add_cusp(app, arguments);
     add_shorthand(app, arguments, "--tolerance", "MM", "slicing.tolerance",
                   "Greatest distance of the printed contour from the exact section");
     add_shorthand(app, arguments, "--at", "X,Y", "plate.at",
@@ -154,12 +170,7 @@ std::string summary_text(const Arguments& arguments, const slicer::Summary& summ
     if (arguments.sections()) {
         text += output_name(arguments.report_path);
     } else {
-        const auto size = summary.box.sizes();
-        std::snprintf(line, sizeof line,
-                      "%.3f x %.3f x %.3f mm at %g mm a layer, tolerance %g mm\n", size.x(),
-                      size.y(), size.z(), arguments.options.profile.layer.height_mm,
-                      arguments.options.tolerance().total_mm);
-        text += line + summary.placed +
+        text += slicer::size_text(summary, arguments.options) + summary.placed +
                 slicer::estimate_text(summary, arguments.options.machine().name) +
                 output_name(arguments.lyr_path) + ": " + counted(summary.bytes, "byte");
     }

@@ -31,6 +31,16 @@ constexpr Contradiction contradictions[] = {
      [](const Profile& p) {
          return p.layer.adaptive && p.layer.max_height_mm > p.nozzle.diameter_mm;
      }},
+    {"perimeters.width", below, "layer.max_height",
+     [](const Profile& p) {
+         return p.layer.adaptive && p.perimeters.width_mm < p.layer.max_height_mm;
+     }},
+    {"skin.width", below, "layer.max_height",
+     [](const Profile& p) { return p.layer.adaptive && p.skin.width_mm < p.layer.max_height_mm; }},
+    {"infill.width", below, "layer.max_height",
+     [](const Profile& p) {
+         return p.layer.adaptive && p.infill.width_mm < p.layer.max_height_mm;
+     }},
     {"perimeters.width", below, "layer.height",
      [](const Profile& p) { return p.perimeters.width_mm < p.layer.height_mm; }},
     {"perimeters.width", below, "layer.first_height",

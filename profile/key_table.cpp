@@ -70,9 +70,10 @@ void add_layer(std::vector<Key>& keys) {
                 "Thickness of the first layer")
         .otherwise("as layer.height",
                    [](Profile& p) { p.layer.first_height_mm = p.layer.height_mm; })
-        .flag("adaptive", &Layer::adaptive, "Thinner layers where the surface is flat")
+        .flag("adaptive", &Layer::adaptive,
+              "Layers as thick as layer.cusp allows, which end on level faces")
         .number("cusp", &Layer::cusp_mm, mm, height_mm,
-                "Adaptive layers: how far a layer's edge may lie off the surface")
+                "Adaptive layers: how deep the steps between them may be, across the surface")
         .number("min_height", &Layer::min_height_mm, mm, height_mm, "Adaptive layers: the thinnest")
         .otherwise("1/4 of nozzle.diameter",
                    [](Profile& p) { p.layer.min_height_mm = times(p.nozzle.diameter_mm, 0.25); })

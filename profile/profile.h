@@ -54,7 +54,7 @@ struct Layer {
     double height_mm = 0.2;
     double first_height_mm = 0.2;
     bool adaptive = false;
-    // Of adaptive layers: how far a layer's edge may lie off the surface, and how thin and thick layers may be.
+    // Of adaptive layers: how deep the steps between them may be, and how thin and thick layers.
     double cusp_mm = 0.05;
     double min_height_mm = 0.1;
     double max_height_mm = 0.3;

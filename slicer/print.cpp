@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "format/writer.h"
 #include "kernel/brep/placement.h"
+#include "slicer/adaptive.h"
 #include "slicer/adhesion.h"
 #include "slicer/bounds.h"
 #include "slicer/encode.h"
@@ -62,7 +63,6 @@ void warn_of_missing(const profile::Profile& profile, Diagnostics& diagnostics) 
     };
     warn(profile.support.kind != profile::SupportKind::none, "support.kind");
     warn(profile.adhesion.kind == profile::AdhesionKind::raft, "adhesion.kind = raft");
-    warn(profile.layer.adaptive, "layer.adaptive");
 }
 
 void warn_of_no_wipe(const profile::Travel& travel, Diagnostics& diagnostics) {
@@ -190,7 +190,7 @@ Result<Summary> print(Model model, const std::string& source_name, const std::st
     warn_of_missing(options.profile, diagnostics);
     warn_of_no_wipe(options.profile.travel, diagnostics);
     warn_beside_plate(*plate, options.profile, diagnostics);
-    const auto spans = layer_spans(summary.box.sizes().z(), options.profile.layer);
+    const auto spans = planned_layers(placed, options, summary, diagnostics);
     auto writer = format::Writer::create(lyr_path, quantum_for(options.tolerance()),
                                          metadata(source_name, plate->shifts.size(), options));
     if (!writer) return writer.error();

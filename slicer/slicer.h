@@ -9,7 +9,7 @@
 //  2. The output depends on the input and the options, not on the number of threads.
 //  3. Layers are `layer.height_mm` thick, the first one `layer.first_height_mm`; each is the section at its middle, as
 //     long as that is below the part's top. So a part of a whole number of layers has just as many, and a rest of
-//     less than half a layer is left off, of more than half counts as a layer.
+//     less than half a layer is left off, of more than half counts as a layer. Adaptive layers: adaptive.h.
 //  4. On the bed means: lowest point at z = 0, the bounding box's lower left corner at `plate.at_mm`. Copies lie as
 //     plate.h has it; they are made once, and differ in their place and in the way from one to the other only.
 //  5. A contour that does not close is an error, unless `allow_open`; then it is left out and reported.
@@ -56,18 +56,31 @@ struct Options {
 // Called from the calling thread only, with what is done of how much.
 using Progress = std::function<void(const char* stage, std::size_t done, std::size_t total)>;
 
+// Of adaptive layers. `deeper_layers` are those whose steps may be deeper than the profile's; uniform layers of
+// `uniform_mm` would have steps as deep as theirs. The first layer counts in neither.
+struct AdaptiveFigures {
+    double thinnest_mm = 0, thickest_mm = 0;
+    std::size_t deeper_layers = 0;
+    double uniform_mm = 0;
+    std::size_t uniform_layers = 0;
+};
+
 // Contours, lines and arcs are those of the layers' outlines, or of the sections.
 struct Summary {
     std::size_t solids = 0, faces = 0, layers = 0, contours = 0, circles = 0, lines = 0, arcs = 0;
     std::size_t united_layers = 0;     // where solids overlapped or touched
     std::size_t uncrossed_layers = 0;  // whose sections crossed themselves
     std::size_t slivers = 0;  // contours left out there: gaps and leftovers within the tolerance
+    std::optional<AdaptiveFigures> adaptive{};
     std::uint64_t bytes = 0;
     Eigen::AlignedBox3d box{};           // of the model, as it is printed; of copies: the first one
     std::string placed{};                // what lies where, if there are copies
     Estimate estimate{};                 // of a print
     double filament_mm = 0, mass_g = 0;  // as the file has them
 };
+
+// For people: the part's size and its layers, in a line or, of adaptive ones, two.
+std::string size_text(const Summary& summary, const Options& options);
 
 // For people: time and filament, then a line for each role that is printed.
 std::string estimate_text(const Summary& summary, const std::string& printer_name);

@@ -5,59 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <utility>
 
-#include "kernel/brep/surface_foot.h"
 #include "kernel/contour/arc.h"
-#include "kernel/geometry/tolerance.h"
+#include "kernel/section/face_outline.h"
 
 namespace lyr {
 namespace {
 
 constexpr double full_turn_rad = 2 * std::numbers::pi;
-
-// Steps that cut an edge into outline points: 48 a turn of a circle keeps them an eighth of a turn apart six times
-// over. A B-spline gets as many for each bend that its control points can make; long ones bend less between two.
-constexpr int steps_per_turn = 48;
-constexpr int steps_per_control_point = 8, fully_stepped_points = 16;
-
-int outline_steps(const Edge& edge) {
-    if (std::holds_alternative<Line>(edge.curve)) return 1;
-    if (const auto* spline = std::get_if<BSplineCurve>(&edge.curve)) {
-        const int points = static_cast<int>(spline->control_points.size());
-        const int full = std::min(points, fully_stepped_points);
-        return steps_per_control_point * full + points - full;
-    }
-    return steps_per_turn;
-}
-
-void append_outline(const Edge& edge, bool reversed, std::vector<Point3>& points) {
-    const int steps = outline_steps(edge);
-    const double from = reversed ? edge.t_end : edge.t_start;
-    const double to = reversed ? edge.t_start : edge.t_end;
-    for (int i = 0; i < steps; ++i) {
-        points.push_back(evaluate(edge.curve, from + (to - from) * i / steps));
-    }
-}
-
-// The face's coedges in order, without those that come in both directions.
-std::vector<Coedge> bounding_coedges(const Model& model, const Face& face) {
-    std::vector<Coedge> all;
-    std::vector<std::pair<EdgeId, bool>> keys;
-    for (std::uint32_t l = 0; l < face.loop_count; ++l) {
-        const Loop& loop = model.loops[face.first_loop + l];
-        for (std::uint32_t c = 0; c < loop.coedge_count; ++c) {
-            all.push_back(model.coedges[loop.first_coedge + c]);
-            keys.emplace_back(all.back().edge, all.back().reversed);
-        }
-    }
-    std::sort(keys.begin(), keys.end());
-    std::erase_if(all, [&](const Coedge& coedge) {
-        return std::binary_search(keys.begin(), keys.end(),
-                                  std::pair(coedge.edge, !coedge.reversed));
-    });
-    return all;
-}
 
 // The signed turn from one point of a loop to the next, in the surface's first parameter.
 double turn_between(const Frame& frame, const Point3& a, const Point3& b) {
@@ -130,52 +85,21 @@ bool is_left_of(const Vector3& pole, const Outline& outline, double sense) {
 // that was found on it, and a vertex on a ray would be met twice at one place. A metre away it is resolution_mm / 100.
 constexpr double ray_offset_rad = 1e-12;
 
-double short_way(double difference, double period) {
-    return period > 0 ? difference - period * std::round(difference / period) : difference;
-}
-
-// Feet of an outline's points on a B-spline surface. One as far off as neighbours are apart is another place's neighbour.
-std::vector<Point2> feet_of(const BSplineSurface& surface, const std::vector<Point3>& points) {
-    constexpr double doubtful_share = 0.125;
-    SurfaceFoot foot(surface);
-    std::vector<Point2> feet;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const double step_mm = i > 0 ? (points[i] - points[i - 1]).norm() : 0;
-        foot.move_to(points[i],
-                     std::max({resolution_mm, 2 * foot.distance_mm(), doubtful_share * step_mm}));
-        feet.push_back(foot.uv());
-    }
-    return feet;
-}
-
-std::vector<Point2> parameters_along(const Surface& surface, const std::vector<Point3>& points) {
-    if (const auto* spline = std::get_if<SharedBSplineSurface>(&surface))
-        return feet_of(**spline, points);
-    std::vector<Point2> result;
-    for (const Point3& point : points) result.push_back(invert(surface, point));
-    return result;
-}
-
-std::array<double, 2> periods_of(const Surface& surface) {
-    if (std::holds_alternative<Torus>(surface)) return {full_turn_rad, full_turn_rad};
-    const auto* spline = std::get_if<SharedBSplineSurface>(&surface);
-    if (!spline) return {0, 0};
-    const BSplineSurface& s = **spline;
-    return {s.closed_u ? s.end_u() - s.start_u() : 0, s.closed_v ? s.end_v() - s.start_v() : 0};
-}
-
 }  // namespace
 
-Containment::Containment(const Model& model, FaceId id, const std::vector<double>& vertex_level_mm)
+Containment::Containment(const Model& model, FaceId id, const std::vector<double>& vertex_level_mm,
+                         bool for_parameters)
     : surface_(model[id].surface),
+      for_parameters_(for_parameters),
       same_sense_(model[id].same_sense),
-      period_(periods_of(surface_)) {
+      period_(parameter_periods(surface_)) {
     std::vector<Coedge> rest = bounding_coedges(model, model[id]);
     while (!rest.empty()) {
         std::vector<Point3> points;
         const VertexId origin = model.start_of(rest.front());
         for (auto next = rest.begin(); next != rest.end();) {
-            append_outline(model[next->edge], next->reversed, points);
+            const Edge& edge = model[next->edge];
+            append_outline(edge, next->reversed, outline_steps(edge), points);
             const VertexId at = model.end_of(*next);
             rest.erase(next);
             if (at == origin) break;
@@ -191,9 +115,11 @@ Outline Containment::prepared(const std::vector<Point3>& points, double height_m
     const auto* torus = std::get_if<Torus>(&surface_);
     if (std::holds_alternative<Sphere>(surface_) || (torus && is_spindle(*torus))) {
         for (const Point3& p : points) outline.directions.push_back(globe_direction(surface_, p));
-    } else if (const auto* frame = axis_frame(surface_)) {
-        outline.winding = winding_around(*frame, points);
-    } else {
+        return outline;
+    }
+    const Frame* axis = axis_frame(surface_);
+    if (axis) outline.winding = winding_around(*axis, points);
+    if (!axis || for_parameters_) {
         const std::vector<Point2> uv = parameters_along(surface_, points);
         for (std::size_t i = 0; i < uv.size(); ++i) {
             const Point2 &from = uv[i], &to = uv[(i + 1) % uv.size()];
@@ -259,10 +185,13 @@ bool Containment::on_spindle(const Point3& point) const {
 double Containment::sense_of_parameters() const {
     const double sense = same_sense_ ? 1 : -1;
     if (const auto* torus = std::get_if<Torus>(&surface_)) return sense * handedness(torus->frame);
+    if (const auto* axis = axis_frame(surface_)) return sense * handedness(*axis);
     return std::get<SharedBSplineSurface>(surface_)->mirrored ? -sense : sense;
 }
 
 bool Containment::holds_parameters(const Point2& uv) const {
+    const auto* torus = std::get_if<Torus>(&surface_);
+    if (torus && is_spindle(*torus)) return on_spindle(evaluate(surface_, uv));
     const Point2 at = uv + Point2::Constant(ray_offset_rad);
     const double sense = sense_of_parameters();
     // fixed 0: along v at constant u; fixed 1: along u at constant v.

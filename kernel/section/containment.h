@@ -34,17 +34,19 @@ struct Outline {
     double height_mm = 0;             // of any vertex: its level
     int winding = 0;                  // cylinder, cone: around the axis
     std::vector<Vector3> directions;  // sphere: on the unit sphere; the first follows the last
-    std::vector<UvStep> steps;        // torus, B-spline
+    std::vector<UvStep> steps;        // torus, B-spline; cylinder and cone if asked for
 };
 
 class Containment {
 public:
-    Containment(const Model& model, FaceId face, const std::vector<double>& vertex_level_mm);
+    // `for_parameters`: holds_parameters() will be asked of a cylinder or a cone, too.
+    Containment(const Model& model, FaceId face, const std::vector<double>& vertex_level_mm,
+                bool for_parameters = false);
 
     // `point` is on the component, whose plane is at z: outlines at that level are below it.
     bool holds(const Point3& point, double z_mm) const;
 
-    // The same of a torus or B-spline surface, for a point of the component given by its parameters.
+    // Whether the face has a point of a torus or B-spline surface, given by its parameters.
     bool holds_parameters(const Point2& uv) const;
 
     // Whether the face of a cone reaches its apex.
@@ -59,7 +61,7 @@ private:
     Outline prepared(const std::vector<Point3>& points, double height_mm) const;
 
     Surface surface_;
-    bool same_sense_;
+    bool for_parameters_, same_sense_;
     std::array<double, 2> period_{0, 0};  // of the surface's parameters; 0: not closed
     std::vector<Outline> outlines_;
 };

@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "kernel/section/face_heights.h"
 #include "kernel/section/face_section.h"
 #include "kernel/section/surface_section.h"
 
@@ -36,44 +37,13 @@ Eigen::AlignedBox3d box_of(const Model& model) {
     return box;
 }
 
-HeightRange range_of_loops(const Model& model, const Face& face, const MonotoneEdges& edges,
-                           const std::vector<HeightRange>& edge_range) {
-    HeightRange range{infinity, -infinity};
-    for (std::uint32_t l = 0; l < face.loop_count; ++l) {
-        const Loop& loop = model.loops[face.first_loop + l];
-        for (std::uint32_t c = 0; c < loop.coedge_count; ++c) {
-            const EdgeId id = model.coedges[loop.first_coedge + c].edge;
-            const double level = edges.vertex_level_mm[model[id].start.value];
-            range.bottom_mm = std::min({range.bottom_mm, level, edge_range[id.value].bottom_mm});
-            range.top_mm = std::max({range.top_mm, level, edge_range[id.value].top_mm});
-        }
-    }
-    return range;
-}
-
-std::vector<HeightRange> edge_ranges(const Model& model, const MonotoneEdges& edges) {
-    std::vector<HeightRange> ranges(model.edges.size(), {infinity, -infinity});
-    for (const MonotonePiece& piece : edges.pieces) {
-        HeightRange& range = ranges[piece.edge.value];
-        range.bottom_mm = std::min(range.bottom_mm, piece.bottom_mm);
-        range.top_mm = std::max(range.top_mm, piece.top_mm);
-    }
-    return ranges;
-}
-
-Point3 apex_of(const Cone& cone) {
-    return cone.frame.origin - cone.radius_mm / std::tan(cone.half_angle_rad) * cone.frame.z;
-}
-
 // The heights at which a closed component of the face's surface can lie in the face; empty for surfaces whose
 // sections are never closed without meeting an edge.
 HeightRange closed_component_range(const Face& face, HeightRange loops,
                                    const FreeformFace* freeform) {
     if (std::holds_alternative<Cylinder>(face.surface)) return loops;
     if (const auto* cone = std::get_if<Cone>(&face.surface)) {
-        const double apex =
-            (cone->frame.origin - cone->radius_mm / std::tan(cone->half_angle_rad) * cone->frame.z)
-                .z();
+        const double apex = apex_of(*cone).z();
         return {std::min(loops.bottom_mm, apex), std::max(loops.top_mm, apex)};
     }
     if (const auto* sphere = std::get_if<Sphere>(&face.surface)) {
@@ -90,36 +60,6 @@ HeightRange closed_component_range(const Face& face, HeightRange loops,
         return {z - reach, z + reach};
     }
     return {infinity, -infinity};
-}
-
-// Points where a closed surface is level, one on each connected set of them, and a spindle torus' poles.
-std::vector<Point3> level_points(const Surface& surface) {
-    if (const auto* sphere = std::get_if<Sphere>(&surface)) {
-        const Vector3 up = sphere->radius_mm * Vector3::UnitZ();
-        return {sphere->frame.origin + up, sphere->frame.origin - up};
-    }
-    const auto* torus = std::get_if<Torus>(&surface);
-    if (!torus) return {};
-    const Vector3& axis = torus->frame.z;
-    const double lean = axis.head<2>().norm();
-    const Vector3 across = lean > angular_resolution_rad
-                               ? Vector3((Vector3::UnitZ() - axis.z() * axis) / lean)
-                               : axis.unitOrthogonal();
-    std::vector<Point3> points;
-    for (const double side : {1.0, -1.0}) {
-        for (const double up : {1.0, -1.0}) {
-            const Vector3 tube = up * torus->minor_mm * Vector3::UnitZ();
-            const bool beyond_axis = torus->major_mm + side * tube.dot(across) < 0;
-            if (beyond_axis != torus->inner_sheet) continue;
-            points.push_back(torus->frame.origin + side * torus->major_mm * across + tube);
-        }
-    }
-    const double pole2 = torus->minor_mm * torus->minor_mm - torus->major_mm * torus->major_mm;
-    if (pole2 > 0) {
-        points.push_back(torus->frame.origin + std::sqrt(pole2) * axis);
-        points.push_back(torus->frame.origin - std::sqrt(pole2) * axis);
-    }
-    return points;
 }
 
 Point2 some_point(const Contour& contour) {
@@ -186,11 +126,11 @@ Cutter::Cutter(const Model& model, const Tolerance& tolerance)
 
     critical_mm_ = critical_heights(model, edges_);
 
-    const std::vector<HeightRange> ranges = edge_ranges(model, edges_);
+    const std::vector<HeightRange> ranges = loop_heights(model, edges_);
     std::vector<HeightInterval> closed;
     for (std::uint32_t f = 0; f < model.faces.size(); ++f) {
         const FaceId id{f};
-        const HeightRange loops = range_of_loops(model, model[id], edges_, ranges);
+        const HeightRange loops = ranges[f];
         const bool freeform = std::holds_alternative<SharedBSplineSurface>(model[id].surface);
         freeform_.push_back(
             freeform ? std::make_unique<FreeformFace>(model, id, edges_.vertex_level_mm, loops)

@@ -9,13 +9,10 @@
 #include "base/lazy.h"
 #include "kernel/brep/model.h"
 #include "kernel/section/containment.h"
+#include "kernel/section/face_heights.h"
 #include "kernel/section/height_mesh.h"
 
 namespace lyr {
-
-struct HeightRange {
-    double bottom_mm, top_mm;
-};
 
 class FreeformFace {
 public:

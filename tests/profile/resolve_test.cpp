@@ -235,6 +235,8 @@ TEST_CASE("resolve 4: values that contradict each other are told with both origi
          "fan.min = \"100%\" (default) is more than fan.max = \"20%\" (--set)"},
         {set("fan.min_layer_time", "61"), "is more than fan.ramp_time"}};
     for (const auto& [setting, message] : wrong) error_of({{}, {setting}}, usage, message);
+    error_of({{}, {set("layer.adaptive", "true"), set("infill.width", "0.25")}}, usage,
+             "infill.width = 0.25 (--set) is less than layer.max_height = 0.3");
     error_of({{}, {set("layer.adaptive", "true"), set("layer.max_height", "0.5")}}, usage,
              "layer.max_height = 0.5 (--set) is more than nozzle.diameter");
     for (const std::string line : {"perimeters", "skin", "infill"})

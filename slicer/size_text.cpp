@@ -1,0 +1,49 @@
+// What stepc says of a print's size and layers.
+
+#include <cstdio>
+
+#include "base/text.h"
+#include "slicer/slicer.h"
+
+namespace lyr::slicer {
+namespace {
+
+std::string uniform_text(const profile::Layer& layer) {
+    char text[80];
+    std::snprintf(text, sizeof text, " at %g mm a layer", layer.height_mm);
+    return text;
+}
+
+std::string adaptive_text(const AdaptiveFigures& figures) {
+    char text[80];
+    std::snprintf(text, sizeof text, " in layers of %.3g to %.3g mm", figures.thinnest_mm,
+                  figures.thickest_mm);
+    return text;
+}
+
+std::string steps_text(const AdaptiveFigures& figures, double cusp_mm) {
+    char text[120];
+    std::snprintf(text, sizeof text, "for steps of %g mm uniform layers would be %zu of %.3g mm",
+                  cusp_mm, figures.uniform_layers, figures.uniform_mm);
+    std::string result = text;
+    if (figures.deeper_layers > 0)
+        result += "; steps may be deeper in " + counted(figures.deeper_layers, "layer") +
+                  " (layer.min_height)";
+    return result + '\n';
+}
+
+}  // namespace
+
+std::string size_text(const Summary& summary, const Options& options) {
+    const auto size = summary.box.sizes();
+    const profile::Layer& layer = options.profile.layer;
+    char line[160];
+    std::snprintf(line, sizeof line, "%.3f x %.3f x %.3f mm", size.x(), size.y(), size.z());
+    std::string text = line;
+    text += summary.adaptive ? adaptive_text(*summary.adaptive) : uniform_text(layer);
+    std::snprintf(line, sizeof line, ", tolerance %g mm\n", options.tolerance().total_mm);
+    text += line;
+    return summary.adaptive ? text + steps_text(*summary.adaptive, layer.cusp_mm) : text;
+}
+
+}  // namespace lyr::slicer
