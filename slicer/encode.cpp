@@ -62,11 +62,13 @@ public:
             append(strand);
             head_ = start_of(strand.path);
         }
+        for (const PrintMove& move : support_moves())
+            append_piece(layer_.fill.support[move.index], move);
         for (const PrintMove& move : moves_) {
             if (move.is_wall) {
                 append_wall(move);
             } else {
-                append_piece(move);
+                append_piece(layer_.fill.pieces[move.index], move);
             }
         }
         if (retracts()) encoder_.retract();
@@ -98,9 +100,20 @@ private:
                             .detours = detours_ ? &*detours_ : nullptr});
     }
 
+    // Between parts of the support the head is over the part as often as not.
+    std::vector<PrintMove> support_moves() const {
+        std::vector<OpenPiece> pieces;
+        for (const Piece& piece : layer_.fill.support) pieces.push_back(ends_of(piece));
+        std::vector<PrintMove> moves =
+            layer_order({.region = {}, .walls = {}, .depths = {}, .pieces = pieces});
+        for (PrintMove& move : moves) move.travel.crosses = true;
+        return moves;
+    }
+
     Point2 first_point() const {
         if (!layer_.fill.around.empty())
             return start_of(std::get<Strand>(layer_.fill.around.front().way).path);
+        if (!layer_.fill.support.empty()) return support_moves().front().seam.point;
         return moves_.empty() ? Point2::Zero() : moves_.front().seam.point;
     }
 
@@ -142,6 +155,7 @@ private:
         const Walls& walls = layer_.outlined.walls;
         for (std::size_t i = 0; i < walls.strands.size(); ++i)
             add(wall_style(i), lyr::length_mm(walls.strands[i].path));
+        for (const Piece& piece : layer_.fill.support) add(piece_style(piece), length_mm(piece));
         for (const Piece& piece : layer_.fill.pieces) add(piece_style(piece), length_mm(piece));
         return time_s;
     }
@@ -217,8 +231,7 @@ private:
         head_ = move.seam.point;
     }
 
-    void append_piece(const PrintMove& move) {
-        const Piece& piece = layer_.fill.pieces[move.index];
+    void append_piece(const Piece& piece, const PrintMove& move) {
         const bool bridges = piece.role == Role::bridge;
         travel(move.travel, move.seam.point);
         if (bridges) encoder_.fan(0, profile_.bridge.fan);

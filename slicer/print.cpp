@@ -14,6 +14,7 @@
 #include "slicer/encode.h"
 #include "slicer/layers.h"
 #include "slicer/slicer.h"
+#include "slicer/support.h"
 
 namespace lyr::slicer {
 namespace {
@@ -58,7 +59,7 @@ void warn_of_missing(const profile::Profile& profile, Diagnostics& diagnostics) 
                                    std::string(what) + ": not made yet, the print goes without",
                                    {}});
     };
-    warn(profile.support.kind != profile::SupportKind::none, "support.kind");
+    warn(profile.support.kind == profile::SupportKind::tree, "support.kind = tree");
     warn(profile.adhesion.kind == profile::AdhesionKind::raft, "adhesion.kind = raft");
     warn(profile.layer.adaptive, "layer.adaptive");
     warn(profile.travel.wipe_mm > 0, "travel.wipe");
@@ -105,10 +106,9 @@ format::Metadata metadata(const std::string& source_name, const Options& options
 }
 
 // Outlines and walls of all layers, with what is wrong.
-Result<std::vector<OutlinedLayer>> outlined(const Model& placed, std::span<const LayerSpan> spans,
+Result<std::vector<OutlinedLayer>> outlined(const Cutter& cutter, std::span<const LayerSpan> spans,
                                             const Options& options, const Progress& progress,
                                             Summary& summary, Diagnostics& diagnostics) {
-    const Cutter cutter(placed, options.tolerance());
     std::vector<OutlinedLayer> layers;
     std::optional<Diagnostic> failed;
     in_order(
@@ -156,8 +156,10 @@ struct FilledLayer {
 
 FilledLayer fill_and_encode(std::size_t i, const LayerSpan& span, const OutlinedLayer& outlined,
                             std::span<const SkinOutline> outlines, std::span<const Seam> seams,
-                            const Options& options, const Estimator& estimator) {
-    const LayerFill fill = fill_layer(i, span, outlined.walls, outlines, options);
+                            const SupportPlan& support, const Options& options,
+                            const Estimator& estimator) {
+    LayerFill fill = fill_layer(i, span, outlined.walls, outlines, options);
+    fill.support = support.pieces(i, options, fill.unresolved);
     FilledLayer made{.unresolved = fill.unresolved};
     auto encoded =
         encode_layer({i, span, outlined, fill, seams}, options, quantum_for(options.tolerance()));
@@ -201,9 +203,9 @@ private:
 
 // Fills, orders and writes. The print's estimate.
 Result<Estimate> write_layers(std::span<const OutlinedLayer> layers,
-                              std::span<const LayerSpan> spans, const Options& options,
-                              format::Writer& writer, const Progress& progress,
-                              Diagnostics& diagnostics) {
+                              std::span<const LayerSpan> spans, const SupportPlan& support,
+                              const Options& options, format::Writer& writer,
+                              const Progress& progress, Diagnostics& diagnostics) {
     const Estimator estimator(options.machine(), options.profile.filament.diameter_mm);
     TimedWriter timed(writer, estimator);
     const auto seams = seams_of(layers, seam_choice(options.profile.perimeters.seam));
@@ -213,7 +215,8 @@ Result<Estimate> write_layers(std::span<const OutlinedLayer> layers,
     in_order(
         layers.size(), thread_count(options),
         [&](std::size_t i) {
-            return fill_and_encode(i, spans[i], layers[i], outlines, seams[i], options, estimator);
+            return fill_and_encode(i, spans[i], layers[i], outlines, seams[i], support, options,
+                                   estimator);
         },
         [&](std::size_t i, FilledLayer made) {
             if (made.unresolved > 0)
@@ -249,6 +252,8 @@ Result<Summary> print(Model model, const std::string& source_name, const std::st
     if (Status checked = check_plate(summary.box, options.profile.plate); !checked)
         return checked.error();
     warn_of_missing(options.profile, diagnostics);
+    const auto blocked = blocked_faces(placed, options.profile.support);
+    if (!blocked) return blocked.error();
     const auto spans = layer_spans(summary.box.sizes().z(), options.profile.layer);
     auto writer = format::Writer::create(lyr_path, quantum_for(options.tolerance()),
                                          metadata(source_name, options));
@@ -259,9 +264,16 @@ Result<Summary> print(Model model, const std::string& source_name, const std::st
         if (!opened) return opened.error();
         report.emplace(std::move(*opened));
     }
-    const auto layers = outlined(placed, spans, options, progress, summary, diagnostics);
+    const Cutter cutter(placed, options.tolerance());
+    const auto layers = outlined(cutter, spans, options, progress, summary, diagnostics);
     if (!layers) return layers.error();
-    const auto estimate = write_layers(*layers, spans, options, *writer, progress, diagnostics);
+    SupportPlan support(*layers, spans);
+    if (options.profile.support.kind == profile::SupportKind::grid) {
+        support.find_overhangs(placed, cutter, *blocked, options);
+        support.find_areas(options, diagnostics);
+    }
+    const auto estimate =
+        write_layers(*layers, spans, support, options, *writer, progress, diagnostics);
     if (!estimate) return estimate.error();
     if (report) {
         for (const OutlinedLayer& layer : *layers) report->write(to_json(layer.section));

@@ -8,6 +8,7 @@
 
 #include "kernel/brep/placement.h"
 #include "kernel/section/cutter.h"
+#include "kernel/section/level_face.h"
 #include "kernel/section_figures.h"
 #include "kernel/solids.h"
 
@@ -133,6 +134,33 @@ TEST_CASE("leaning 1: spans are the section, leaning or not") {
             const Section section = Cutter(turned_model, Tolerance{}).cut(0.11);
             CHECK(lengths.leaning_mm + lengths.other_mm ==
                   doctest::Approx(length_of(section)).epsilon(1e-4));
+        }
+    }
+}
+
+TEST_CASE("level faces: an underside's region is what its edges bound, whichever way it looks") {
+    for (const double angle : {0.0, 0.6}) {
+        for (const bool upside_down : {false, true}) {
+            Model model = turned(drilled_box(8, 6, 4, 2), angle, Vector3::UnitZ());
+            if (upside_down) model = turned(std::move(model), pi, Vector3::UnitX());
+            int down = 0, up = 0;
+            for (std::uint32_t f = 0; f < model.faces.size(); ++f) {
+                const auto level = level_face(model, FaceId{f}, Tolerance{});
+                if (!level) continue;
+                CHECK(level->z_mm == doctest::Approx(level->looks_down ? -2 : 2));
+                ++(level->looks_down ? down : up);
+                REQUIRE(level->region.size() == 2);
+                double area = 0;
+                int circles = 0;
+                for (const Contour& contour : level->region) {
+                    area += area_mm2(contour);
+                    circles += std::holds_alternative<FullCircle>(contour);
+                }
+                CHECK(area == doctest::Approx(48 - 4 * pi));
+                CHECK(circles == 1);
+            }
+            CHECK(down == 1);
+            CHECK(up == 1);
         }
     }
 }
