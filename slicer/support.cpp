@@ -179,15 +179,15 @@ void SupportPlan::find_areas(const Options& options, Diagnostics& diagnostics) {
     const SupportRequest request = request_of(options);
     std::size_t used = 0;
     for (std::size_t i = 0; i < levels_.size(); ++i)
-        if (!levels_[i].overhang.empty()) used = i;
-    std::vector<KeptClear> clear(levels_.size());
+        if (!levels_[i].overhang.empty()) used = i + 1;
+    std::vector<LayerRoom> rooms(levels_.size());
     in_order(
-        used, thread_count(options), [&](std::size_t i) { return kept_clear(levels_, i, request); },
-        [&](std::size_t i, KeptClear made) {
-            clear[i] = std::move(made);
+        used, thread_count(options), [&](std::size_t i) { return room_of(levels_, i, request); },
+        [&](std::size_t i, LayerRoom made) {
+            rooms[i] = std::move(made);
             return true;
         });
-    areas_ = support_areas(levels_, clear, request);
+    areas_ = support_areas(levels_, rooms, request);
     const auto warn = [&](std::size_t layer, const std::string& message) {
         diagnostics.push_back({Severity::warning,
                                ExitStatus::geometry,

@@ -51,14 +51,14 @@ std::vector<Contours> gathered(const std::vector<Region>& regions, const region:
 
 class Columns {
 public:
-    Columns(std::span<const SupportLevel> levels, std::span<const KeptClear> clear,
+    Columns(std::span<const SupportLevel> levels, std::span<const LayerRoom> rooms,
             const SupportRequest& request)
-        : levels_(levels), clear_(clear), request_(request), begin_(levels.size()) {}
+        : levels_(levels), rooms_(rooms), request_(request), begin_(levels.size()) {}
 
     SupportAreas areas() {
         result_.layers.resize(levels_.size());
         for (std::size_t i = 0; i < levels_.size(); ++i) {
-            if (levels_[i].overhang.empty()) continue;
+            if (rooms_[i].contact.empty()) continue;
             const std::size_t at = highest_support(levels_, i, request_.gap_z_mm);
             if (at < levels_.size()) begin_[at].push_back(i);
         }
@@ -74,33 +74,34 @@ private:
 
     void descend(std::size_t i) {
         std::vector<Region> regions;
-        for (const std::size_t above : begin_[i]) {
-            if (!can_begin(above, i)) result_.out_of_reach.push_back(above);
-            regions.push_back(levels_[above].overhang);
-        }
+        for (const std::size_t above : begin_[i]) regions.push_back(rooms_[above].contact);
         if (i + 1 < levels_.size() && !result_.layers[i + 1].empty())
             regions.push_back(result_.layers[i + 1]);
         if (regions.empty()) return;
         RegionResult all = regions.size() == 1
                                ? RegionResult{.contours = {regions[0].begin(), regions[0].end()}}
                                : united(regions, request_.allowed_mm);
-        const Contours& clear = clear_[i].contours;
+        const Contours& clear = rooms_[i].clear;
         RegionResult left = clear.empty() ? std::move(all)
                                           : combined(all.contours, clear, Operation::subtract,
                                                      request_.allowed_mm, sliver_mm());
-        settle(i, all.unresolved + left.unresolved + clear_[i].unresolved);
+        settle(i, all.unresolved + left.unresolved + rooms_[i].unresolved);
         result_.layers[i] = std::move(left.contours);
+        if (!begin_[i].empty()) look_for_room(i);
     }
 
     // Into what is narrower no line fits: it would go all the way down and never be printed.
     double sliver_mm() const { return request_.width_mm / 2; }
 
-    bool can_begin(std::size_t above, std::size_t at) {
-        const RegionResult free = combined(levels_[above].overhang, clear_[at].contours,
-                                           Operation::subtract, request_.allowed_mm);
-        const OffsetResult middles = offset(free.contours, {.distance_mm = -request_.width_mm / 2,
-                                                            .allowed_mm = request_.allowed_mm});
-        return !middles.contours.empty();
+    void look_for_room(std::size_t i) {
+        const OffsetResult middles =
+            offset(result_.layers[i],
+                   {.distance_mm = -request_.width_mm / 2, .allowed_mm = request_.allowed_mm});
+        for (const std::size_t above : begin_[i]) {
+            const RegionResult held = combined(middles.contours, rooms_[above].contact,
+                                               Operation::intersect, request_.allowed_mm);
+            if (held.contours.empty()) result_.out_of_reach.push_back(above);
+        }
     }
 
     void keep_on_bed() {
@@ -115,7 +116,7 @@ private:
     }
 
     std::span<const SupportLevel> levels_;
-    std::span<const KeptClear> clear_;
+    std::span<const LayerRoom> rooms_;
     const SupportRequest& request_;
     std::vector<std::vector<std::size_t>> begin_;  // by layer: overhangs whose support begins here
     SupportAreas result_{};
@@ -154,8 +155,8 @@ std::size_t highest_support(std::span<const SupportLevel> levels, std::size_t la
     return levels.size();
 }
 
-KeptClear kept_clear(std::span<const SupportLevel> levels, std::size_t layer,
-                     const SupportRequest& request) {
+LayerRoom room_of(std::span<const SupportLevel> levels, std::size_t layer,
+                  const SupportRequest& request) {
     const SupportLevel& level = levels[layer];
     const double low_mm = level.bottom_mm - request.gap_z_mm + resolution_mm;
     const double high_mm = level.top_mm + request.gap_z_mm - resolution_mm;
@@ -165,20 +166,30 @@ KeptClear kept_clear(std::span<const SupportLevel> levels, std::size_t layer,
         levels, layer, 1, [&](const SupportLevel& over) { return over.bottom_mm < high_mm; });
     parts.insert(parts.end(), above.begin(), above.end());
     std::erase_if(parts, [](const Region& part) { return part.empty(); });
-    KeptClear result;
-    OffsetResult around =
-        offset(level.part, {.distance_mm = request.gap_xy_mm, .allowed_mm = request.allowed_mm});
-    result.unresolved += around.unresolved.has_value();
-    parts.push_back(around.contours);
-    RegionResult all = united(parts, request.allowed_mm);
-    result.unresolved += all.unresolved;
-    result.contours = std::move(all.contours);
+    LayerRoom result;
+    const auto grown = [&](double distance_mm) {
+        OffsetResult around =
+            offset(level.part, {.distance_mm = distance_mm, .allowed_mm = request.allowed_mm});
+        result.unresolved += around.unresolved.has_value();
+        return std::move(around.contours);
+    };
+    const auto take = [&](RegionResult made) {
+        result.unresolved += made.unresolved;
+        return std::move(made.contours);
+    };
+    const Contours beside = grown(request.gap_xy_mm);
+    parts.push_back(beside);
+    result.clear = take(united(parts, request.allowed_mm));
+    if (level.overhang.empty()) return result;
+    const Contours reach = request.gap_xy_mm < request.width_mm ? grown(request.width_mm) : beside;
+    result.contact =
+        take(combined(level.overhang, reach, Operation::intersect, request.allowed_mm));
     return result;
 }
 
-SupportAreas support_areas(std::span<const SupportLevel> levels, std::span<const KeptClear> clear,
+SupportAreas support_areas(std::span<const SupportLevel> levels, std::span<const LayerRoom> rooms,
                            const SupportRequest& request) {
-    return Columns(levels, clear, request).areas();
+    return Columns(levels, rooms, request).areas();
 }
 
 DividedSupport divided(Region inside, std::span<const SupportLevel> levels, std::size_t layer,

@@ -3,14 +3,15 @@
 // Contract
 //  1. The support of a layer is nowhere nearer than gap_xy_mm to the part in that layer, and there is no part over or
 //     under it that is nearer than gap_z_mm, as heights of layers go: the air is at least as high as the gap.
-//  2. What an overhang asks for begins in the highest layer that leaves the gap under it, and goes on downwards, apart
+//  2. Support reaches out beside the part that hangs over it by gap_xy_mm, or by a line if that is more: there is room for a
+//     line under a point too. What an overhang asks for begins in the highest layer that leaves the gap under it, and goes on downwards, apart
 //     from what 1 takes away: to the bed, to the part, or, with `on_bed_only`, not at all if that is not the bed.
 //  3. Interfaces are the `interface_layers` highest layers under an overhang, and as many over the part where support stands
 //     on it. With sparse support they share the corners where they meet.
 //  4. An overhang that is so near to the bed that no layer fits between them is not supported: it lies within the gap over it.
 //  5. Overhangs of which nothing wide enough for a line can be held, but for 4 and `on_bed_only`, are in `out_of_reach`.
 //
-// Work on one layer by itself (kept_clear, divided) can be done in any order and on any number of threads.
+// Work on one layer by itself (room_of, divided) can be done in any order and on any number of threads.
 
 #pragma once
 
@@ -36,13 +37,13 @@ struct SupportLevel {
     Region overhang{};  // of the layer, for support below it
 };
 
-// The region that the support of a layer keeps clear of.
-struct KeptClear {
-    std::vector<Contour> contours{};
+// What a layer leaves to support: the region that its own support keeps clear of, and where its overhang's begins below.
+struct LayerRoom {
+    std::vector<Contour> clear{}, contact{};
     std::size_t unresolved = 0;
 };
-KeptClear kept_clear(std::span<const SupportLevel> levels, std::size_t layer,
-                     const SupportRequest& request);
+LayerRoom room_of(std::span<const SupportLevel> levels, std::size_t layer,
+                  const SupportRequest& request);
 
 struct SupportAreas {
     std::vector<std::vector<Contour>> layers{};
@@ -51,8 +52,8 @@ struct SupportAreas {
     std::vector<std::size_t> unresolved{};  // layers with regions that could not be worked out
 };
 
-// `clear`: of every layer, from kept_clear(); those over the highest overhang are not looked at.
-SupportAreas support_areas(std::span<const SupportLevel> levels, std::span<const KeptClear> clear,
+// `rooms`: of every layer, from room_of(); those over the highest overhang may be empty.
+SupportAreas support_areas(std::span<const SupportLevel> levels, std::span<const LayerRoom> rooms,
                            const SupportRequest& request);
 
 struct DividedSupport {
