@@ -70,7 +70,7 @@ OverhangEdges edges_at(const Cutter& cutter, const LayerSpan& span,
             edges.blocked.push_back(
                 {std::move(found.path),
                  std::min(most_blocked_mm, blocked_reach * out_mm + options.tolerance().total_mm)});
-        } else if (found.leans) {
+        } else {
             edges.leaning.push_back(std::move(found.path));
         }
     }

@@ -95,7 +95,7 @@ private:
             const double first = turn > 0 ? turn * std::floor(from / turn) : 0;
             for (double base = first; base < to; base += turn) {
                 for (const double key : own)
-                    if (base + key > corners.back() && base + key < to)
+                    if (base + key > corners.back() + look_mm && base + key < to)
                         corners.push_back(base + key);
                 if (turn == 0) break;
             }
@@ -187,14 +187,14 @@ public:
 private:
     void add(const Span& span, double from, double to, const Point2& start, const Point2& end,
              double over_rad, double most_over_rad) {
+        if (!(over_rad > 0)) return;
         Path path{start, {}};
         if (span.component < 0) {
             path.segments.push_back({end});
         } else {
             trace(section_, span.component, from, to, start, end, tolerance_, path.segments);
         }
-        result_.push_back(
-            {id_, std::move(path), over_rad > 0, most_over_rad + limit_rad_ + lean_resolution_rad});
+        result_.push_back({id_, std::move(path), most_over_rad + limit_rad_ + lean_resolution_rad});
     }
 
     FaceId id_;

@@ -4,13 +4,14 @@
 // degrees of a flat underside, negative where it faces up.
 //
 // Contract
-//  1. The spans are the section of each face, in the section's direction (the material on the left), each divided where
-//     the lean passes the limit: at the parameter where the normal does, found by bisection on the curve itself.
+//  1. The spans are those stretches of each face's section that lean out by more than the limit, in the section's direction
+//     (the material on the left). They end with the face's section, or where the lean passes the limit: at the parameter
+//     where the normal does, found by bisection on the curve itself.
 //  2. A surface that leans by just the limit does not pass it: lean_resolution_rad is allowed for.
 //  3. Spans of the faces themselves: where solids overlap or a section crosses itself, they are not on its outline.
 //
-// A stretch is found if it holds one of the places looked at, which are 24 in a turn or more where the section turns,
-// or if a parabola through three of them foretells it.
+// A stretch is found if it holds one of the places looked at, or if a parabola through three of them foretells it. They are
+// 24 in a turn; on a free-form surface, those where its section is tracked, but no nearer than look_mm, and at least five.
 
 #pragma once
 
@@ -24,10 +25,11 @@ namespace lyr {
 // Files state directions to seven digits.
 inline constexpr double lean_resolution_rad = 1e-6;
 
+inline constexpr double look_mm = 0.1;
+
 struct LeaningSpan {
     FaceId face;
     Path path;            // open, from its start
-    bool leans;           // by more than the limit
     double most_rad = 0;  // lean at any of the places looked at
 };
 
