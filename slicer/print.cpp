@@ -10,6 +10,7 @@
 #include "format/writer.h"
 #include "kernel/brep/placement.h"
 #include "kernel/toolpath/layer_order.h"
+#include "slicer/adhesion.h"
 #include "slicer/bounds.h"
 #include "slicer/encode.h"
 #include "slicer/layers.h"
@@ -160,6 +161,9 @@ FilledLayer fill_and_encode(std::size_t i, const LayerSpan& span, const Outlined
                             const Estimator& estimator) {
     LayerFill fill = fill_layer(i, span, outlined.walls, outlines, options);
     fill.support = support.pieces(i, options, fill.unresolved);
+    if (i == 0)
+        fill.around = adhesion_of(support.with_part(i, options, fill.unresolved), span.height_mm(),
+                                  options, fill.unresolved);
     FilledLayer made{.unresolved = fill.unresolved};
     auto encoded =
         encode_layer({i, span, outlined, fill, seams}, options, quantum_for(options.tolerance()));

@@ -210,6 +210,16 @@ Region SupportPlan::area(std::size_t layer) const {
     return empty() ? Region() : Region(areas_.layers[layer]);
 }
 
+std::vector<Contour> SupportPlan::with_part(std::size_t layer, const Options& options,
+                                            std::size_t& unresolved) const {
+    const std::vector<Contour>& part = layers_[layer].outline;
+    if (area(layer).empty()) return part;
+    RegionResult both =
+        combined(part, area(layer), Operation::unite, options.tolerance().unite_mm());
+    unresolved += both.unresolved;
+    return std::move(both.contours);
+}
+
 std::vector<Piece> SupportPlan::pieces(std::size_t layer, const Options& options,
                                        std::size_t& unresolved) const {
     std::vector<Piece> pieces;

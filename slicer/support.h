@@ -38,6 +38,10 @@ public:
     Region area(std::size_t layer) const;
     Region overhang(std::size_t layer) const { return overhangs_[layer].contours; }
 
+    // The part and its support, as one.
+    std::vector<Contour> with_part(std::size_t layer, const Options& options,
+                                   std::size_t& unresolved) const;
+
     // Of one layer; on any thread.
     std::vector<Piece> pieces(std::size_t layer, const Options& options,
                               std::size_t& unresolved) const;
