@@ -14,6 +14,7 @@
 #include "slicer/bounds.h"
 #include "slicer/encode.h"
 #include "slicer/layers.h"
+#include "slicer/raft.h"
 #include "slicer/slicer.h"
 #include "slicer/support.h"
 
@@ -61,7 +62,6 @@ void warn_of_missing(const profile::Profile& profile, Diagnostics& diagnostics) 
                                    {}});
     };
     warn(profile.support.kind == profile::SupportKind::tree, "support.kind = tree");
-    warn(profile.adhesion.kind == profile::AdhesionKind::raft, "adhesion.kind = raft");
     warn(profile.layer.adaptive, "layer.adaptive");
     warn(profile.travel.wipe_mm > 0, "travel.wipe");
     warn(profile.plate.copies > 1, "plate.copies");
@@ -87,7 +87,8 @@ Status check_plate(const Eigen::AlignedBox3d& box, const profile::Plate& plate) 
 Model on_bed(Model model, const Options& options, Eigen::AlignedBox3d& box) {
     box = bounding_box(model, options.tolerance(), thread_count(options));
     const Vector3 move(options.profile.plate.at_mm[0] - box.min().x(),
-                       options.profile.plate.at_mm[1] - box.min().y(), -box.min().z());
+                       options.profile.plate.at_mm[1] - box.min().y(),
+                       raised_mm(options.profile) - box.min().z());
     box.translate(move);
     return transformed(std::move(model), Eigen::Affine3d(Eigen::Translation3d(move)));
 }
@@ -155,15 +156,30 @@ struct FilledLayer {
     std::optional<Diagnostic> error{};
 };
 
-FilledLayer fill_and_encode(std::size_t i, const LayerSpan& span, const OutlinedLayer& outlined,
-                            std::span<const SkinOutline> outlines, std::span<const Seam> seams,
-                            const SupportPlan& support, const Options& options,
-                            const Estimator& estimator) {
-    LayerFill fill = fill_layer(i, span, outlined.walls, outlines, options);
+// What is printed besides walls: of the raft, or of the part with what stands around it.
+LayerFill fill_of(std::size_t i, const LayerSpan& span, const OutlinedLayer& outlined,
+                  std::span<const SkinOutline> outlines, const SupportPlan& support,
+                  const Options& options) {
+    const std::size_t raft = raft_layers(options.profile);
+    LayerFill fill;
+    if (i < raft) {
+        const auto footprint = support.with_part(raft, options, fill.unresolved);
+        fill.support = raft_pieces(i, footprint, options, fill.unresolved);
+        return fill;
+    }
+    fill = fill_layer(i - raft, span, outlined.walls, outlines.subspan(raft), options);
     fill.support = support.pieces(i, options, fill.unresolved);
     if (i == 0)
         fill.around = adhesion_of(support.with_part(i, options, fill.unresolved), span.height_mm(),
                                   options, fill.unresolved);
+    return fill;
+}
+
+FilledLayer fill_and_encode(std::size_t i, const LayerSpan& span, const OutlinedLayer& outlined,
+                            std::span<const SkinOutline> outlines, std::span<const Seam> seams,
+                            const SupportPlan& support, const Options& options,
+                            const Estimator& estimator) {
+    const LayerFill fill = fill_of(i, span, outlined, outlines, support, options);
     FilledLayer made{.unresolved = fill.unresolved};
     auto encoded =
         encode_layer({i, span, outlined, fill, seams}, options, quantum_for(options.tolerance()));
@@ -258,7 +274,7 @@ Result<Summary> print(Model model, const std::string& source_name, const std::st
     warn_of_missing(options.profile, diagnostics);
     const auto blocked = blocked_faces(placed, options.profile.support);
     if (!blocked) return blocked.error();
-    const auto spans = layer_spans(summary.box.sizes().z(), options.profile.layer);
+    const auto spans = print_spans(summary.box.sizes().z(), options.profile);
     auto writer = format::Writer::create(lyr_path, quantum_for(options.tolerance()),
                                          metadata(source_name, options));
     if (!writer) return writer.error();
@@ -271,7 +287,7 @@ Result<Summary> print(Model model, const std::string& source_name, const std::st
     const Cutter cutter(placed, options.tolerance());
     const auto layers = outlined(cutter, spans, options, progress, summary, diagnostics);
     if (!layers) return layers.error();
-    SupportPlan support(*layers, spans);
+    SupportPlan support(*layers, spans, raft_layers(options.profile));
     if (options.profile.support.kind == profile::SupportKind::grid) {
         support.find_overhangs(placed, cutter, *blocked, options);
         support.find_areas(options, diagnostics);

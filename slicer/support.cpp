@@ -128,8 +128,9 @@ Result<std::vector<FaceId>> blocked_faces(const Model& model, const profile::Sup
     return faces;
 }
 
-SupportPlan::SupportPlan(std::span<const OutlinedLayer> layers, std::span<const LayerSpan> spans)
-    : layers_(layers), overhangs_(layers.size()) {
+SupportPlan::SupportPlan(std::span<const OutlinedLayer> layers, std::span<const LayerSpan> spans,
+                         std::size_t first)
+    : layers_(layers), first_(first), overhangs_(layers.size()) {
     for (std::size_t i = 0; i < layers.size(); ++i)
         levels_.push_back({spans[i].bottom_mm, spans[i].top_mm, layers[i].outline, {}});
 }
@@ -156,7 +157,7 @@ void SupportPlan::find_overhangs(const Model& model, const Cutter& cutter,
     in_order(
         levels_.size(), threads,
         [&](std::size_t i) {
-            if (i == 0) return Overhang{};
+            if (i <= first_) return Overhang{};
             const double ledge = ledge_mm(span_of(i), options);
             const bool flat =
                 may_be_flat(layers_[i].seen, layers_[i - 1].seen, ledge, skin_width_mm(options));
@@ -254,6 +255,11 @@ std::vector<Piece> SupportPlan::pieces(std::size_t layer, const Options& options
     };
     fill(parts.sparse, profile.support.density, angle_rad, format::Role::support);
     fill(parts.interface, 1, angle_rad + std::numbers::pi / 2, format::Role::support_interface);
+    if (layer == first_ && first_ > 0) {
+        const double height_mm = levels_[layer].top_mm - levels_[layer].bottom_mm;
+        const double air_mm = levels_[layer].bottom_mm - levels_[layer - 1].top_mm;
+        for (Piece& piece : pieces) piece.flow = (height_mm + air_mm) / height_mm;
+    }
     return pieces;
 }
 

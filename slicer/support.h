@@ -5,7 +5,8 @@
 //     flat undersides that are no bridges (kernel/toolpath/overhang.h); not so under faces that support.blockers name.
 //  2. Support stands as kernel/toolpath/support_areas.h has it.
 //  3. It has one wall, sparse lines that lie over each other in all layers, and dense lines across where it meets the part.
-//  4. Overhangs under which there is no room for support are warned of, with the first of their layers.
+//  4. On a raft, it stands on that: the lines of its lowest layer fill the gap under the part too.
+//  5. Overhangs under which there is no room for support are warned of, with the first of their layers.
 
 #pragma once
 
@@ -26,7 +27,9 @@ Result<std::vector<FaceId>> blocked_faces(const Model& model, const profile::Sup
 class SupportPlan {
 public:
     SupportPlan() = default;  // none
-    SupportPlan(std::span<const OutlinedLayer> layers, std::span<const LayerSpan> spans);
+    // The layers below `first` are a raft's, without outlines.
+    SupportPlan(std::span<const OutlinedLayer> layers, std::span<const LayerSpan> spans,
+                std::size_t first = 0);
 
     // Where support is needed: from the normals of the model's faces.
     void find_overhangs(const Model& model, const Cutter& cutter, std::span<const FaceId> blocked,
@@ -48,6 +51,7 @@ public:
 
 private:
     std::span<const OutlinedLayer> layers_{};
+    std::size_t first_ = 0;
     std::vector<Overhang> overhangs_{};  // by layer
     std::vector<SupportLevel> levels_{};
     SupportAreas areas_{};
