@@ -61,7 +61,6 @@ void warn_of_missing(const profile::Profile& profile, Diagnostics& diagnostics) 
                                    std::string(what) + ": not made yet, the print goes without",
                                    {}});
     };
-    warn(profile.support.kind == profile::SupportKind::tree, "support.kind = tree");
     warn(profile.layer.adaptive, "layer.adaptive");
     warn(profile.travel.wipe_mm > 0, "travel.wipe");
     warn(profile.plate.copies > 1, "plate.copies");
@@ -288,7 +287,7 @@ Result<Summary> print(Model model, const std::string& source_name, const std::st
     const auto layers = outlined(cutter, spans, options, progress, summary, diagnostics);
     if (!layers) return layers.error();
     SupportPlan support(*layers, spans, raft_layers(options.profile));
-    if (options.profile.support.kind == profile::SupportKind::grid) {
+    if (options.profile.support.kind != profile::SupportKind::none) {
         support.find_overhangs(placed, cutter, *blocked, options);
         support.find_areas(options, diagnostics);
     }

@@ -10,6 +10,7 @@
 #include "base/text.h"
 #include "kernel/section/level_face.h"
 #include "kernel/toolpath/infill.h"
+#include "kernel/toolpath/support_tree.h"
 
 namespace lyr::slicer {
 namespace {
@@ -188,7 +189,9 @@ void SupportPlan::find_areas(const Options& options, Diagnostics& diagnostics) {
             rooms[i] = std::move(made);
             return true;
         });
-    areas_ = support_areas(levels_, rooms, request);
+    areas_ = options.profile.support.kind == profile::SupportKind::tree
+                 ? support_tree(levels_, rooms, {.support = request})
+                 : support_areas(levels_, rooms, request);
     const auto warn = [&](std::size_t layer, const std::string& message) {
         diagnostics.push_back({Severity::warning,
                                ExitStatus::geometry,
@@ -253,7 +256,8 @@ std::vector<Piece> SupportPlan::pieces(std::size_t layer, const Options& options
         unresolved += lines.unresolved;
         append(std::move(lines), role, pieces);
     };
-    fill(parts.sparse, profile.support.density, angle_rad, format::Role::support);
+    if (profile.support.kind == profile::SupportKind::grid)
+        fill(parts.sparse, profile.support.density, angle_rad, format::Role::support);
     fill(parts.interface, 1, angle_rad + std::numbers::pi / 2, format::Role::support_interface);
     if (layer == first_ && first_ > 0) {
         const double height_mm = levels_[layer].top_mm - levels_[layer].bottom_mm;

@@ -53,15 +53,13 @@ class Columns {
 public:
     Columns(std::span<const SupportLevel> levels, std::span<const LayerRoom> rooms,
             const SupportRequest& request)
-        : levels_(levels), rooms_(rooms), request_(request), begin_(levels.size()) {}
+        : levels_(levels),
+          rooms_(rooms),
+          request_(request),
+          begin_(beginnings(levels, rooms, request.gap_z_mm)) {}
 
     SupportAreas areas() {
         result_.layers.resize(levels_.size());
-        for (std::size_t i = 0; i < levels_.size(); ++i) {
-            if (rooms_[i].contact.empty()) continue;
-            const std::size_t at = highest_support(levels_, i, request_.gap_z_mm);
-            if (at < levels_.size()) begin_[at].push_back(i);
-        }
         for (std::size_t i = levels_.size(); i-- > 0;) descend(i);
         if (request_.on_bed_only) keep_on_bed();
         return std::move(result_);
@@ -153,6 +151,18 @@ std::size_t highest_support(std::span<const SupportLevel> levels, std::size_t la
     for (std::size_t k = layer; k-- > 0;)
         if (levels[k].top_mm <= top_mm) return k;
     return levels.size();
+}
+
+std::vector<std::vector<std::size_t>> beginnings(std::span<const SupportLevel> levels,
+                                                 std::span<const LayerRoom> rooms,
+                                                 double gap_z_mm) {
+    std::vector<std::vector<std::size_t>> begin(levels.size());
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+        if (rooms[i].contact.empty()) continue;
+        const std::size_t at = highest_support(levels, i, gap_z_mm);
+        if (at < levels.size()) begin[at].push_back(i);
+    }
+    return begin;
 }
 
 LayerRoom room_of(std::span<const SupportLevel> levels, std::size_t layer,

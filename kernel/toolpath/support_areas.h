@@ -69,4 +69,8 @@ DividedSupport divided(Region inside, std::span<const SupportLevel> levels, std:
 std::size_t highest_support(std::span<const SupportLevel> levels, std::size_t layer,
                             double gap_z_mm);
 
+// By layer: the layers whose overhangs' support begins there.
+std::vector<std::vector<std::size_t>> beginnings(std::span<const SupportLevel> levels,
+                                                 std::span<const LayerRoom> rooms, double gap_z_mm);
+
 }  // namespace lyr

@@ -47,12 +47,19 @@ TEST_CASE(
     CHECK(roles.front() == format::Role::support);
     CHECK(std::count(roles.begin() + 1, roles.end(), format::Role::support) == 0);
     CHECK(folder.run("lyrrun p.lyr --simulate").status == 0);
-    std::set<std::string> files;
-    for (const char* threads : {"1", "2", "5"}) {
-        CHECK(folder.run(lying + "--threads " + threads).status == 0);
-        files.insert(text_of(folder / "p.lyr"));
+}
+
+TEST_CASE("stepc --set support.kind: the same bytes for any number of threads") {
+    const Folder folder = with_bore("stepc-support-threads");
+    for (const std::string kind : {"grid", "tree"}) {
+        std::set<std::string> files;
+        for (const char* threads : {"1", "2", "5"}) {
+            const std::string more = "--set support.kind=" + kind + " --threads " + threads;
+            CHECK(folder.run(lying + more).status == 0);
+            files.insert(text_of(folder / "p.lyr"));
+        }
+        CHECK(files.size() == 1);
     }
-    CHECK(files.size() == 1);
 }
 
 TEST_CASE("stepc --set support.blockers: a face is named, by its #id too, or the mistake is") {

@@ -69,6 +69,12 @@ Options grid(double layer_mm = 0.2) {
     return options;
 }
 
+Options tree() {
+    Options options = grid();
+    options.profile.support.kind = profile::SupportKind::tree;
+    return options;
+}
+
 struct Supported {
     Options options;
     std::vector<LayerSpan> spans;
@@ -130,7 +136,8 @@ void over(Region region, double pitch_mm, Take take) {
 constexpr double pitch_mm = 0.6;
 constexpr double round_off_mm = 2e-3;
 
-void check_gaps_and_standing(const Supported& s) {
+// `lean_mm`: how far support may reach over that of the layer below.
+void check_gaps_and_standing(const Supported& s, double lean_mm = 0) {
     const profile::Support& support = s.options.profile.support;
     std::size_t points = 0;
     for (std::size_t i = 0; i < s.spans.size(); ++i) {
@@ -142,7 +149,7 @@ void check_gaps_and_standing(const Supported& s) {
                 if (s.keeps_clear_of(i, k) && s.in_part(k, p) &&
                     !s.parts[k].is_near(p, round_off_mm))
                     FAIL_CHECK("support of layer ", i, " is too near to the part in layer ", k);
-            if (i == 0 || s.in_support(i - 1, p)) return;
+            if (i == 0 || s.in_support(i - 1, p) || s.supports[i - 1].is_near(p, lean_mm)) return;
             // Else the part is below, or so near in the layer below that there is no support.
             bool stands = false;
             for (std::size_t k = 0; k < i; ++k) stands = stands || s.in_part(k, p);
@@ -225,6 +232,63 @@ TEST_CASE("support 2: gaps are kept, and support stands on the bed, the part or 
         thin.profile.support.gap_xy_mm = 0.7;
         check_gaps_and_standing(Supported(part.model, thin));
     }
+}
+
+TEST_CASE("support_tree 1, 3: gaps are kept, and branches lean by no more than their angle") {
+    const Model lying =
+        turned(frustum(3, 3, 12, Side::seam), pi / 2, Vector3(1, 0.3, 0).normalized());
+    for (const Model& model : {funnel(65), table(), shelf(), at(sphere(5, true), 0, 0, 5), lying,
+                               turned(torus(6, 2, true), 1.1, Vector3::UnitX())}) {
+        for (const bool on_bed_only : {false, true}) {
+            CAPTURE(on_bed_only);
+            Options options = tree();
+            options.profile.support.interface_layers = 0;
+            options.profile.support.on_bed_only = on_bed_only;
+            const Supported s(model, options);
+            check_gaps_and_standing(s, 0.2 * std::tan(40 * pi / 180) + round_off_mm);
+            CHECK(s.diagnostics.empty());
+        }
+    }
+}
+
+TEST_CASE("support_tree 2, 4: tips are near to all that hangs over, and branches are circles") {
+    for (const Model& model : {table(), shelf(), funnel(65)}) {
+        Options options = tree();
+        options.profile.support.interface_layers = 0;
+        const Supported s(model, options), columns(model);
+        std::size_t circles = 0, contours = 0;
+        for (std::size_t i = 0; i < s.spans.size(); ++i) {
+            for (const Contour& contour : s.plan.area(i)) {
+                ++contours;
+                circles += std::holds_alternative<FullCircle>(contour);
+            }
+            over(columns.plan.area(i), pitch_mm, [&](const Point2& p) {
+                const bool begins = i + 1 == s.spans.size() || !columns.in_support(i + 1, p);
+                if (!begins || columns.supports[i].is_near(p, 0.225)) return;
+                // A tip's own circle is nearer than its middle.
+                bool near = false;
+                for (std::size_t k = i - std::min<std::size_t>(i, 10);
+                     k < std::min(s.spans.size(), i + 10); ++k)
+                    near = near || s.in_support(k, p) || s.supports[k].is_near(p, 1.25 * 3);
+                if (!near) FAIL_CHECK("no tip near ", p.x(), ' ', p.y(), " in layer ", i);
+            });
+        }
+        CHECK(circles > contours / 2);
+        CHECK(s.volume_mm3() < 0.7 * columns.volume_mm3());
+        CHECK(s.volume_mm3() > 0);
+    }
+}
+
+TEST_CASE("support_tree 5: a roof of as many layers as asked for lies under an overhang") {
+    Options options = tree();
+    options.profile.support.interface_layers = 3;
+    const Supported s(table(), options), columns(table());
+    // The underside is at 7.9: its first layer begins at 7.8, over one of air.
+    const std::size_t top = 37;
+    CHECK(s.plan.area(top + 1).empty());
+    for (std::size_t i = top - 2; i <= top; ++i)
+        CHECK(area_mm2(s.plan.area(i)) >= doctest::Approx(area_mm2(columns.plan.area(i))));
+    CHECK(area_mm2(s.plan.area(top - 3)) < 0.5 * area_mm2(columns.plan.area(top - 3)));
 }
 
 TEST_CASE("support 1: what hangs over lies over support") {
