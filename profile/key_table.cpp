@@ -150,7 +150,7 @@ void add_support(std::vector<Key>& keys) {
         .fraction("density", &Support::density, part, "Share of the support that is filled")
         .flag("on_bed_only", &Support::on_bed_only, "No support that stands on the part")
         .list("blockers", &Support::blockers,
-              "Names of faces, as the STEP file has them, that are not supported");
+              "Faces that are not supported: their names in the STEP file, or #id");
     Section(keys, "adhesion", &Profile::adhesion)
         .choice("kind", &Adhesion::kind, Names(adhesion_names), "What is printed around the part")
         .count("skirt_loops", &Adhesion::skirt_loops, {1, 1000}, "How many loops a skirt has")

@@ -110,7 +110,7 @@ struct Support {
     std::uint32_t interface_layers = 2;
     double density = 0.15;
     bool on_bed_only = false;
-    std::vector<std::string> blockers;  // names of faces under which there is no support
+    std::vector<std::string> blockers;  // names or #ids of faces under which there is no support
     bool operator==(const Support&) const = default;
 };
 

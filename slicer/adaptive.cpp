@@ -6,8 +6,10 @@
 #include <numeric>
 #include <span>
 
+#include "kernel/brep/placement.h"
 #include "kernel/section/flatness.h"
 #include "slicer/layer_sequence.h"
+#include "slicer/raft.h"
 
 namespace lyr::slicer {
 namespace {
@@ -154,10 +156,15 @@ LayerPlan adaptive_plan(const Model& placed, double part_height_mm, const Option
 std::vector<LayerSpan> planned_layers(const Model& placed, const Options& options, Summary& summary,
                                       Diagnostics& diagnostics) {
     const double height_mm = summary.box.sizes().z();
-    if (!options.profile.layer.adaptive) return layer_spans(height_mm, options.profile.layer);
-    LayerPlan plan = adaptive_plan(placed, height_mm, options, diagnostics);
+    const profile::Layer layer = part_layers(options.profile);
+    if (!layer.adaptive) return on_raft(layer_spans(height_mm, layer), options.profile);
+    Options of_part = options;
+    of_part.profile.layer = layer;
+    const Model lowered = transformed(
+        placed, Eigen::Affine3d(Eigen::Translation3d(0, 0, -raised_mm(options.profile))));
+    LayerPlan plan = adaptive_plan(lowered, height_mm, of_part, diagnostics);
     summary.adaptive = plan.figures;
-    return std::move(plan.spans);
+    return on_raft(std::move(plan.spans), options.profile);
 }
 
 }  // namespace lyr::slicer

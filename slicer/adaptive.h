@@ -29,7 +29,7 @@ struct LayerPlan {
 LayerPlan adaptive_plan(const Model& placed, double part_height_mm, const Options& options,
                         Diagnostics& diagnostics);
 
-// The layers that the profile asks for.
+// The layers that the profile asks for, on a raft if there is one; `placed` as it is printed.
 std::vector<LayerSpan> planned_layers(const Model& placed, const Options& options, Summary& summary,
                                       Diagnostics& diagnostics);
 

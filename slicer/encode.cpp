@@ -61,6 +61,7 @@ private:
         if (!layer_.skirt.empty()) return start_of(layer_.skirt.front());
         const Vector2& shift = layer_.copies.front().shift;
         if (!layer_.fill.around.empty()) return start_of(layer_.fill.around.front()) + shift;
+        if (!layer_.support_moves.empty()) return layer_.support_moves.front().seam.point + shift;
         return (layer_.moves.empty() ? corner() : layer_.moves.front().seam.point) + shift;
     }
 
@@ -72,7 +73,8 @@ private:
     }
 
     void append(const Copy& copy) {
-        const bool is_empty = layer_.fill.around.empty() && layer_.moves.empty();
+        const bool is_empty =
+            layer_.fill.around.empty() && layer_.support_moves.empty() && layer_.moves.empty();
         if (is_empty && layer_.copies.size() > 1) return;
         if (head_) *head_ += shift_ - copy.shift;
         shift_ = copy.shift;
@@ -80,11 +82,13 @@ private:
         object_ = copy.object;
         enters_ = head_.has_value();
         append_around(layer_.fill.around);
+        for (const PrintMove& move : layer_.support_moves)
+            append_piece(layer_.fill.support[move.index], move);
         for (const PrintMove& move : layer_.moves) {
             if (move.is_wall) {
                 append_wall(move);
             } else {
-                append_piece(move);
+                append_piece(layer_.fill.pieces[move.index], move);
             }
         }
     }
@@ -138,6 +142,7 @@ private:
         const Walls& walls = layer_.outlined.walls;
         for (std::size_t i = 0; i < walls.strands.size(); ++i)
             add(wall_style(i), lyr::length_mm(walls.strands[i].path));
+        for (const Piece& piece : layer_.fill.support) add(piece_style(piece), length_mm(piece));
         for (const Piece& piece : layer_.fill.pieces) add(piece_style(piece), length_mm(piece));
         return time_s * static_cast<double>(layer_.copies.size());
     }
@@ -187,7 +192,8 @@ private:
 
     // The order was planned without what lies around and other copies: nobody looked at the way from there.
     const Travel& way_to(const PrintMove& move) const {
-        return &move == &layer_.moves.front() ? straight_ : move.travel;
+        const bool is_first = !layer_.moves.empty() && &move == &layer_.moves.front();
+        return is_first ? straight_ : move.travel;
     }
 
     void travel(const Travel& way, const Point2& to) {
@@ -243,8 +249,7 @@ private:
         head_ = move.seam.point;
     }
 
-    void append_piece(const PrintMove& move) {
-        const Piece& piece = layer_.fill.pieces[move.index];
+    void append_piece(const Piece& piece, const PrintMove& move) {
         const bool bridges = piece.role == Role::bridge;
         travel(way_to(move), move.seam.point);
         if (bridges) encoder_.fan(0, profile_.bridge.fan);
@@ -358,6 +363,16 @@ std::vector<PrintMove> order_layer(const OutlinedLayer& outlined, const LayerFil
          .pieces = pieces,
          .sequence = outer_first ? WallSequence::outer_first : WallSequence::inner_first,
          .detours = detours ? &*detours : nullptr});
+}
+
+std::vector<PrintMove> order_support(const LayerFill& fill) {
+    std::vector<OpenPiece> pieces;
+    for (const Piece& piece : fill.support) pieces.push_back(ends_of(piece));
+    std::vector<PrintMove> moves =
+        layer_order({.region = {}, .walls = {}, .depths = {}, .pieces = pieces});
+    // Between parts of the support the head is over the part as often as not.
+    for (PrintMove& move : moves) move.travel.crosses = true;
+    return moves;
 }
 
 format::Quantum quantum_for(const Tolerance& tolerance) {

@@ -6,7 +6,6 @@
 #include "kernel/toolpath/bridges.h"
 #include "kernel/toolpath/centre_lines.h"
 #include "kernel/toolpath/infill.h"
-#include "slicer/adhesion.h"
 
 namespace lyr::slicer {
 namespace {
@@ -187,9 +186,6 @@ LayerFill fill_layer(std::size_t index, const LayerSpan& span, const Walls& wall
         filler.solid(skins.solid, format::Role::solid_infill);
         filler.sparse(skins.sparse);
     }
-    if (index == 0)
-        filler.fill.around =
-            adhesion_of(outlines[0].region(), span.height_mm(), options, filler.fill.unresolved);
     return std::move(filler.fill);
 }
 

@@ -22,7 +22,8 @@ struct Piece {
 double length_mm(const Piece& piece);
 
 struct LayerFill {
-    std::vector<Piece> around{};  // closed, to be printed before everything else, in this order
+    std::vector<Piece> around{};   // closed, to be printed before everything else, in this order
+    std::vector<Piece> support{};  // to be printed next
     std::vector<Piece> pieces{};
     std::size_t unresolved = 0;
 };

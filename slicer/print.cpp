@@ -9,13 +9,16 @@
 #include "base/text.h"
 #include "format/writer.h"
 #include "kernel/brep/placement.h"
+#include "kernel/region/curve.h"
 #include "slicer/adaptive.h"
 #include "slicer/adhesion.h"
 #include "slicer/bounds.h"
 #include "slicer/encode.h"
 #include "slicer/layers.h"
 #include "slicer/plate.h"
+#include "slicer/raft.h"
 #include "slicer/slicer.h"
+#include "slicer/support.h"
 #include "slicer/write_layers.h"
 
 namespace lyr::slicer {
@@ -52,19 +55,6 @@ Status check_size(const Eigen::AlignedBox3d& box, const profile::Layer& layer) {
     return Done{};
 }
 
-// What the profile asks for and no print has yet; nothing of it is left out in silence.
-void warn_of_missing(const profile::Profile& profile, Diagnostics& diagnostics) {
-    const auto warn = [&](bool asked, const char* what) {
-        if (asked)
-            diagnostics.push_back({Severity::warning,
-                                   ExitStatus::unsupported,
-                                   std::string(what) + ": not made yet, the print goes without",
-                                   {}});
-    };
-    warn(profile.support.kind != profile::SupportKind::none, "support.kind");
-    warn(profile.adhesion.kind == profile::AdhesionKind::raft, "adhesion.kind = raft");
-}
-
 void warn_of_no_wipe(const profile::Travel& travel, Diagnostics& diagnostics) {
     if (!(travel.wipe_mm > 0) || travel.retract_length_mm > 0) return;
     diagnostics.push_back({Severity::warning,
@@ -90,12 +80,12 @@ Status check_plate(const Eigen::AlignedBox3d& box, const profile::Plate& plate) 
     return Diagnostic{Severity::error, ExitStatus::geometry, text, {}};
 }
 
-// Skirts and brims reach out of the parts' boxes.
+// Skirts, brims, rafts and supports reach out of the parts' boxes.
 void warn_beside_plate(const PlateLayout& plate, const profile::Profile& profile,
                        Diagnostics& diagnostics) {
     const auto& [width_mm, depth_mm] = profile.plate.size_mm;
+    if (width_mm == 0 && depth_mm == 0) return;
     const double reach_mm = adhesion_reach_mm(profile);
-    if ((width_mm == 0 && depth_mm == 0) || reach_mm == 0) return;
     double beside_mm = 0;
     for (const Contour& contour : plate.outline)
         for (const Segment& segment : std::get<Path>(contour).segments)
@@ -103,17 +93,37 @@ void warn_beside_plate(const PlateLayout& plate, const profile::Profile& profile
                                   segment.end.x() + reach_mm - width_mm,
                                   segment.end.y() + reach_mm - depth_mm});
     if (beside_mm <= resolution_mm) return;
+    const char* what = "support";
+    if (profile.adhesion.kind == profile::AdhesionKind::skirt) what = "skirt";
+    if (profile.adhesion.kind == profile::AdhesionKind::brim) what = "brim";
+    if (profile.adhesion.kind == profile::AdhesionKind::raft) what = "raft";
     char text[120];
-    std::snprintf(
-        text, sizeof text, "the %s reaches %.3g mm beyond the plate (plate.at, plate.size)",
-        profile.adhesion.kind == profile::AdhesionKind::skirt ? "skirt" : "brim", beside_mm);
+    std::snprintf(text, sizeof text,
+                  "the %s reaches %.3g mm beyond the plate (plate.at, plate.size)", what,
+                  beside_mm);
     diagnostics.push_back({Severity::warning, ExitStatus::geometry, text, {}});
+}
+
+// The part's box with its support and raft.
+Eigen::AlignedBox3d with_support(Eigen::AlignedBox3d box, const SupportPlan& support,
+                                 std::size_t layers, const profile::Profile& profile) {
+    const auto extend = [&](const Point2& point) { box.extend(Point3(point.x(), point.y(), 0)); };
+    for (std::size_t i = 0; !support.empty() && i < layers; ++i)
+        for (const Contour& contour : support.area(i)) {
+            extend(region::box_of(contour).min());
+            extend(region::box_of(contour).max());
+        }
+    const double reach_mm = raft_reach_mm(profile);
+    box.min().head<2>().array() -= reach_mm;
+    box.max().head<2>().array() += reach_mm;
+    return box;
 }
 
 Model on_bed(Model model, const Options& options, Eigen::AlignedBox3d& box) {
     box = bounding_box(model, options.tolerance(), thread_count(options));
     const Vector3 move(options.profile.plate.at_mm[0] - box.min().x(),
-                       options.profile.plate.at_mm[1] - box.min().y(), -box.min().z());
+                       options.profile.plate.at_mm[1] - box.min().y(),
+                       raised_mm(options.profile) - box.min().z());
     box.translate(move);
     return transformed(std::move(model), Eigen::Affine3d(Eigen::Translation3d(move)));
 }
@@ -141,10 +151,9 @@ format::Metadata metadata(const std::string& source_name, std::size_t copies,
 }
 
 // Outlines and walls of all layers, with what is wrong.
-Result<std::vector<OutlinedLayer>> outlined(const Model& placed, std::span<const LayerSpan> spans,
+Result<std::vector<OutlinedLayer>> outlined(const Cutter& cutter, std::span<const LayerSpan> spans,
                                             const Options& options, const Progress& progress,
                                             Summary& summary, Diagnostics& diagnostics) {
-    const Cutter cutter(placed, options.tolerance());
     std::vector<OutlinedLayer> layers;
     std::optional<Diagnostic> failed;
     in_order(
@@ -184,15 +193,15 @@ Result<Summary> print(Model model, const std::string& source_name, const std::st
         return checked.error();
     if (Status checked = check_plate(summary.box, options.profile.plate); !checked)
         return checked.error();
-    const auto plate = lay_out(summary.box, options.profile);
-    if (!plate) return plate.error();
-    summary.placed = layout_text(*plate);
-    warn_of_missing(options.profile, diagnostics);
+    // What support adds is known later.
+    if (const auto parts = lay_out(summary.box, options.profile); !parts) return parts.error();
     warn_of_no_wipe(options.profile.travel, diagnostics);
-    warn_beside_plate(*plate, options.profile, diagnostics);
+    const auto blocked = blocked_faces(placed, options.profile.support);
+    if (!blocked) return blocked.error();
     const auto spans = planned_layers(placed, options, summary, diagnostics);
-    auto writer = format::Writer::create(lyr_path, quantum_for(options.tolerance()),
-                                         metadata(source_name, plate->shifts.size(), options));
+    auto writer =
+        format::Writer::create(lyr_path, quantum_for(options.tolerance()),
+                               metadata(source_name, options.profile.plate.copies, options));
     if (!writer) return writer.error();
     std::optional<ReplaceFile> report;
     if (!report_path.empty()) {
@@ -200,10 +209,21 @@ Result<Summary> print(Model model, const std::string& source_name, const std::st
         if (!opened) return opened.error();
         report.emplace(std::move(*opened));
     }
-    const auto layers = outlined(placed, spans, options, progress, summary, diagnostics);
+    const Cutter cutter(placed, options.tolerance());
+    const auto layers = outlined(cutter, spans, options, progress, summary, diagnostics);
     if (!layers) return layers.error();
+    SupportPlan support(*layers, spans, raft_layers(options.profile));
+    if (options.profile.support.kind != profile::SupportKind::none) {
+        support.find_overhangs(placed, cutter, *blocked, options);
+        support.find_areas(options, diagnostics);
+    }
+    const auto plate =
+        lay_out(with_support(summary.box, support, spans.size(), options.profile), options.profile);
+    if (!plate) return plate.error();
+    summary.placed = layout_text(*plate);
+    warn_beside_plate(*plate, options.profile, diagnostics);
     const auto estimate =
-        write_layers({*layers, spans, *plate, options}, *writer, progress, diagnostics);
+        write_layers({*layers, spans, support, *plate, options}, *writer, progress, diagnostics);
     if (!estimate) return estimate.error();
     if (report) {
         for (const OutlinedLayer& layer : *layers) report->write(to_json(layer.section));

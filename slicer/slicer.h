@@ -10,7 +10,7 @@
 //  3. Layers are `layer.height_mm` thick, the first one `layer.first_height_mm`; each is the section at its middle, as
 //     long as that is below the part's top. So a part of a whole number of layers has just as many, and a rest of
 //     less than half a layer is left off, of more than half counts as a layer. Adaptive layers: adaptive.h.
-//  4. On the bed means: lowest point at z = 0, the bounding box's lower left corner at `plate.at_mm`. Copies lie as
+//  4. On the bed means: lowest point at z = 0, or over the raft (raft.h); the bounding box's lower left corner at `plate.at_mm`. Copies lie as
 //     plate.h has it; they are made once, and differ in their place and in the way from one to the other only.
 //  5. A contour that does not close is an error, unless `allow_open`; then it is left out and reported.
 //  6. Surfaces that close, if need be after sewing, are solids. Those that do not are left out beside solids; alone they

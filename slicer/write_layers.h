@@ -5,12 +5,14 @@
 #include "format/writer.h"
 #include "slicer/outline.h"
 #include "slicer/plate.h"
+#include "slicer/support.h"
 
 namespace lyr::slicer {
 
 struct LayersToWrite {
     std::span<const OutlinedLayer> layers;
     std::span<const LayerSpan> spans;
+    const SupportPlan& support;
     const PlateLayout& plate;
     const Options& options;
 };

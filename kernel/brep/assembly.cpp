@@ -90,6 +90,7 @@ SolidPlan plan_of(const Model& model, SolidId id) {
 Model assembled(const Model& model, const std::vector<SolidPlan>& solids) {
     Model result;
     result.uncertainty_mm = model.uncertainty_mm;
+    result.face_names = model.face_names;
     for (const SolidPlan& solid : solids) {
         const SolidId solid_id{result.solids.size()};
         result.solids.push_back(
@@ -137,6 +138,7 @@ void append(Model& model, Model part) {
         model.solids.push_back(std::move(solid));
     }
     model.uncertainty_mm = std::max(model.uncertainty_mm, part.uncertainty_mm);
+    model.face_names.merge(part.face_names);
 }
 
 }  // namespace lyr

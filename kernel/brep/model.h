@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -82,6 +83,7 @@ struct Model {
     std::vector<Solid> solids;
     double uncertainty_mm =
         0;  // the file's own statement of how far its parts may be apart; 0: none
+    std::map<SourceId, std::string> face_names;  // by the face's source; of those that have one
 
     const Vertex& operator[](VertexId id) const { return vertices[id.value]; }
     const Edge& operator[](EdgeId id) const { return edges[id.value]; }

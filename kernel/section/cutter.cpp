@@ -293,34 +293,40 @@ bool Cutter::holds(FaceId face, const SurfaceSection& section, int component, do
     return containment(face).holds({on.x(), on.y(), z_mm}, z_mm);
 }
 
-void Cutter::add_whole_components(FaceId id, const SurfaceSection& section,
-                                  const std::vector<bool>& crossed, Work& work) const {
+std::vector<int> Cutter::whole_components(FaceId id, const SurfaceSection& section,
+                                          const std::vector<bool>& crossed, double z_mm) const {
+    std::vector<int> whole;
     for (int component = 0; component < component_count(section); ++component) {
         const bool is_crossed = !crossed.empty() && crossed[static_cast<std::size_t>(component)];
         if (is_crossed || period(section, component) == 0) continue;
-        if (!holds(id, section, component, work.z_mm)) continue;
-        work.whole_contours.emplace_back(solid_of(id),
-                                         whole_component(section, component, tolerance_));
+        if (holds(id, section, component, z_mm)) whole.push_back(component);
     }
+    return whole;
+}
+
+FaceSpans Cutter::paired(const SurfaceSection& section, std::span<const Event> events,
+                         const Work& work) const {
+    if (events.empty()) return {};
+    std::vector<FaceCrossing> crossings;
+    for (const Event& event : events) {
+        const Crossing& crossing = work.crossings[event.crossing];
+        crossings.push_back(
+            {event.crossing, event.enters, {crossing.point, crossing.piece->middle}});
+    }
+    return pair_crossings(section, crossings);
 }
 
 void Cutter::cut_face(FaceId id, std::span<const Event> events, bool whole, Work& work) const {
     const SurfaceSection section = section_at(id, work.z_mm);
-    FaceSpans paired;
-    if (!events.empty()) {
-        std::vector<FaceCrossing> crossings;
-        for (const Event& event : events) {
-            const Crossing& crossing = work.crossings[event.crossing];
-            crossings.push_back(
-                {event.crossing, event.enters, {crossing.point, crossing.piece->middle}});
-        }
-        paired = pair_crossings(section, crossings);
-        add_spans(id, section, paired, work);
-    }
-    if (whole) add_whole_components(id, section, paired.crossed, work);
+    const FaceSpans spans = paired(section, events, work);
+    add_spans(id, section, spans, work);
+    if (!whole) return;
+    for (const int component : whole_components(id, section, spans.crossed, work.z_mm))
+        work.whole_contours.emplace_back(solid_of(id),
+                                         whole_component(section, component, tolerance_));
 }
 
-void Cutter::cut_faces(Work& work) const {
+void Cutter::for_faces(const Work& work, const FaceVisit& visit) const {
     std::vector<FaceId> closed;
     closed_faces_by_height_.stab(work.z_mm, [&](std::uint32_t f) { closed.push_back(FaceId{f}); });
     std::sort(closed.begin(), closed.end());
@@ -338,7 +344,7 @@ void Cutter::cut_faces(Work& work) const {
         const bool beyond =
             first == last && freeform &&
             (work.z_mm < freeform->heights().bottom_mm || freeform->heights().top_mm <= work.z_mm);
-        if (!beyond) cut_face(face, {first, last}, is_whole, work);
+        if (!beyond) visit(face, {first, last}, is_whole);
         first = last;
     }
 }
@@ -409,7 +415,9 @@ Section Cutter::cut(double z_mm) const {
     Work work{.z_mm = clear_of_levels(z_mm)};
     work.section.z_mm = z_mm;
     find_crossings(work);
-    cut_faces(work);
+    for_faces(work, [&](FaceId face, std::span<const Event> events, bool whole) {
+        cut_face(face, events, whole, work);
+    });
     stitch(work);
     std::move(work.whole_contours.begin(), work.whole_contours.end(),
               std::back_inserter(work.contours));

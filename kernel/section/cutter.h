@@ -15,6 +15,7 @@
 
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -26,6 +27,7 @@
 #include "kernel/section/face_section.h"
 #include "kernel/section/freeform_face.h"
 #include "kernel/section/interval_index.h"
+#include "kernel/section/leaning.h"
 
 namespace lyr {
 
@@ -49,6 +51,9 @@ public:
     Cutter(const Model& model, const Tolerance& tolerance);
 
     Section cut(double z_mm) const;
+
+    // The section of each face, divided by how far the surface leans out (leaning.h).
+    std::vector<LeaningSpan> leaning(double z_mm, double limit_rad) const;
 
     // The exact lowest and highest point of the model's faces.
     HeightRange height_range() const;
@@ -81,13 +86,17 @@ private:
     double clear_of_levels(double z_mm) const;
     SolidId solid_of(FaceId face) const;
     void find_crossings(Work& work) const;
-    void cut_faces(Work& work) const;
+    // Calls visit(face, its events, whether it may hold whole components) for every face that the plane meets.
+    using FaceVisit = std::function<void(FaceId, std::span<const Event>, bool)>;
+    void for_faces(const Work& work, const FaceVisit& visit) const;
     void cut_face(FaceId face, std::span<const Event> events, bool whole, Work& work) const;
     SurfaceSection section_at(FaceId face, double z_mm) const;
     void add_spans(FaceId face, const SurfaceSection& section, const FaceSpans& spans,
                    Work& work) const;
-    void add_whole_components(FaceId face, const SurfaceSection& section,
-                              const std::vector<bool>& crossed, Work& work) const;
+    FaceSpans paired(const SurfaceSection& section, std::span<const Event> events,
+                     const Work& work) const;
+    std::vector<int> whole_components(FaceId face, const SurfaceSection& section,
+                                      const std::vector<bool>& crossed, double z_mm) const;
     const Containment& containment(FaceId face) const;
     bool holds(FaceId face, const SurfaceSection& section, int component, double z_mm) const;
     void stitch(Work& work) const;

@@ -65,19 +65,13 @@ double extent_mm(std::span<const BoundaryPiece> boundary, const Vector2& across)
     return high - low;
 }
 
-struct Trial {
-    double angle_rad = 0;
-    double held = 0;  // the share of the rows' length
-    double longest_mm = 0;
-};
-
 bool is_held(const Boundary& below, const Point2& end, const Vector2& beyond) {
     return below.winding(end) > 0 || below.winding(end + beyond) > 0;
 }
 
-Trial tried(std::span<const BoundaryPiece> boundary, const Boundary& below, double angle_rad,
-            double spacing_mm) {
-    Trial trial{.angle_rad = angle_rad};
+BridgeSpan tried(std::span<const BoundaryPiece> boundary, const Boundary& below, double angle_rad,
+                 double spacing_mm) {
+    BridgeSpan trial{.angle_rad = angle_rad};
     const double extent = extent_mm(boundary, {-std::sin(angle_rad), std::cos(angle_rad)});
     if (extent <= resolution_mm) return trial;
     const Rows rows =
@@ -100,24 +94,24 @@ Trial tried(std::span<const BoundaryPiece> boundary, const Boundary& below, doub
     return trial;
 }
 
-std::optional<double> best_of(const std::vector<Trial>& trials) {
+std::optional<BridgeSpan> best_of(const std::vector<BridgeSpan>& trials) {
     double most_held = 0;
-    for (const Trial& trial : trials) most_held = std::max(most_held, trial.held);
+    for (const BridgeSpan& trial : trials) most_held = std::max(most_held, trial.held);
     if (most_held < least_held) return std::nullopt;
-    std::vector<Trial> best;
-    for (const Trial& trial : trials)
+    std::vector<BridgeSpan> best;
+    for (const BridgeSpan& trial : trials)
         if (trial.held >= most_held - as_good) best.push_back(trial);
     double shortest = best.front().longest_mm;
-    for (const Trial& trial : best) shortest = std::min(shortest, trial.longest_mm);
-    for (const Trial& trial : best)
-        if (trial.longest_mm <= (1 + as_good) * shortest) return trial.angle_rad;
+    for (const BridgeSpan& trial : best) shortest = std::min(shortest, trial.longest_mm);
+    for (const BridgeSpan& trial : best)
+        if (trial.longest_mm <= (1 + as_good) * shortest) return trial;
     return std::nullopt;
 }
 
-std::optional<double> angle_of(Region bridge, const Boundary& below, double spacing_mm) {
+std::optional<BridgeSpan> span_of(Region bridge, const Boundary& below, double spacing_mm) {
     const std::vector<BoundaryPiece> boundary = boundary_pieces(bridge);
     if (boundary.empty()) return std::nullopt;
-    std::vector<Trial> trials;
+    std::vector<BridgeSpan> trials;
     for (const double angle : candidates(boundary, spacing_mm))
         trials.push_back(tried(boundary, below, angle, spacing_mm));
     return best_of(trials);
@@ -139,15 +133,20 @@ std::vector<Bridge> bridges_over(Region bridges, Region below, double spacing_mm
     }
     const Boundary holding(below);
     for (std::vector<Contour>& part : parts_of(bridges)) {
-        const auto angle = angle_of(part, holding, spacing_mm);
-        result.push_back({std::move(part), angle});
+        const auto span = span_of(part, holding, spacing_mm);
+        result.push_back({std::move(part), span ? std::optional(span->angle_rad) : std::nullopt});
     }
     return result;
 }
 
-std::optional<double> bridge_angle(Region bridge, Region below, double spacing_mm) {
+std::optional<BridgeSpan> bridge_span(Region bridge, Region below, double spacing_mm) {
     if (!is_valid(bridge, below, spacing_mm)) return std::nullopt;
-    return angle_of(bridge, Boundary(below), spacing_mm);
+    return span_of(bridge, Boundary(below), spacing_mm);
+}
+
+std::optional<double> bridge_angle(Region bridge, Region below, double spacing_mm) {
+    const auto span = bridge_span(bridge, below, spacing_mm);
+    return span ? std::optional(span->angle_rad) : std::nullopt;
 }
 
 }  // namespace lyr

@@ -28,6 +28,14 @@ struct Bridge {
 // Each part of the bridges for itself.
 std::vector<Bridge> bridges_over(Region bridges, Region below, double spacing_mm);
 
+// How a part is held in the direction of its bridge_angle().
+struct BridgeSpan {
+    double angle_rad = 0;
+    double held = 0;        // the share of its rows, by their length, that is held at both ends
+    double longest_mm = 0;  // of these rows
+};
+std::optional<BridgeSpan> bridge_span(Region bridge, Region below, double spacing_mm);
+
 // Of one part.
 std::optional<double> bridge_angle(Region bridge, Region below, double spacing_mm);
 

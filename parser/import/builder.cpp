@@ -277,6 +277,7 @@ Status Builder::add_face(const ShellRecord& record, const FaceRecord& face, Shel
     const bool same_sense = (face.same_sense == stated->same_sense) != is_inner;
     model_.faces.push_back(
         {std::move(surface), same_sense, first_loop, face.loop_count, shell, file_.id(face.face)});
+    if (!face.name.empty()) model_.face_names.emplace(file_.id(face.face), face.name);
     if (Status checked = check_extent(model_.faces.back()); !checked)
         return in_file(checked.error(), face.face);
     return Done{};

@@ -69,6 +69,8 @@ private:
         const InstanceIndex surface = has_surface ? fields.reference(2) : InstanceIndex();
         const bool same_sense = !has_surface || fields.boolean(3);
         if (!fields.ok()) return fields.error();
+        // A name that is none is no reason to refuse a face.
+        Result<std::string> name = fields.value(0).as_string();
         const auto first_loop = static_cast<std::uint32_t>(record_.loops.size());
         const std::size_t first_use = record_.uses.size();
         for (const InstanceIndex bound : bounds) {
@@ -79,7 +81,8 @@ private:
         if (!has_surface && !is_polygon)
             return unsupported(file_, face, "a face of " + named(file_, user));
         record_.faces.push_back({face, surface, !has_surface || same_sense != flip, first_loop,
-                                 static_cast<std::uint32_t>(bounds.size())});
+                                 static_cast<std::uint32_t>(bounds.size()),
+                                 name ? std::move(*name) : std::string()});
         return Done{};
     }
 

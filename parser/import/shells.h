@@ -33,6 +33,7 @@ struct FaceRecord {
     InstanceIndex face, surface;  // a face of polygons may have no surface
     bool same_sense;
     std::uint32_t first_loop, loop_count;
+    std::string name;
 };
 
 struct ShellRecord {

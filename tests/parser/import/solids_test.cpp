@@ -313,3 +313,19 @@ TEST_CASE("1: axes that are missing or parallel are chosen as the standard does"
     CHECK(is(plane_frame("#900", "#902"), z, x));
     CHECK(is(plane_frame("$", "#902"), z, x));
 }
+
+TEST_CASE("faces keep the names that the file gives them, and need none") {
+    StepText step;
+    const int solid = step.box({1, 2, 3}, {4, 6, 8}, {});
+    step.spoil("ADVANCED_FACE", 0, 0, "'roof \\X\\E4'");
+    step.spoil("ADVANCED_FACE", 1, 0, "$");
+    step.spoil("ADVANCED_FACE", 2, 0, ".ROOF.");
+    step.representation({solid}, step.millimetres());
+    const Imported result = imported(step);
+    check_model(result.model);
+    REQUIRE(result.model.face_names.size() == 1);
+    const auto& [source, name] = *result.model.face_names.begin();
+    CHECK(name == "roof \xc3\xa4");
+    CHECK(std::count_if(result.model.faces.begin(), result.model.faces.end(),
+                        [&](const Face& face) { return face.source == source; }) == 1);
+}
