@@ -7,6 +7,8 @@
 #include <numbers>
 
 #include "kernel/contour/arc.h"
+#include "kernel/geometry/tolerance.h"
+#include "kernel/section/face_heights.h"
 #include "kernel/section/face_outline.h"
 
 namespace lyr {
@@ -38,6 +40,24 @@ const Frame* axis_frame(const Surface& surface) {
     if (const auto* cylinder = std::get_if<Cylinder>(&surface)) return &cylinder->frame;
     if (const auto* cone = std::get_if<Cone>(&surface)) return &cone->frame;
     return nullptr;
+}
+
+// All directions around the axis are one at a cone's apex: an outline that passes it has the directions of its
+// neighbours there, one after the other.
+std::vector<Point2> turned_at_apex(const Surface& surface, const std::vector<Point3>& points,
+                                   const std::vector<Point2>& uv) {
+    const auto* cone = std::get_if<Cone>(&surface);
+    if (!cone) return uv;
+    std::vector<Point2> result;
+    for (std::size_t i = 0; i < uv.size(); ++i) {
+        if ((points[i] - apex_of(*cone)).norm() > resolution_mm) {
+            result.push_back(uv[i]);
+            continue;
+        }
+        result.emplace_back(uv[(i + uv.size() - 1) % uv.size()].x(), uv[i].y());
+        result.emplace_back(uv[(i + 1) % uv.size()].x(), uv[i].y());
+    }
+    return result;
 }
 
 // Each sheet of a torus whose tube crosses the axis is closed at two poles, like a sphere.
@@ -120,7 +140,8 @@ Outline Containment::prepared(const std::vector<Point3>& points, double height_m
     const Frame* axis = axis_frame(surface_);
     if (axis) outline.winding = winding_around(*axis, points);
     if (!axis || for_parameters_) {
-        const std::vector<Point2> uv = parameters_along(surface_, points);
+        const std::vector<Point2> uv =
+            turned_at_apex(surface_, points, parameters_along(surface_, points));
         for (std::size_t i = 0; i < uv.size(); ++i) {
             const Point2 &from = uv[i], &to = uv[(i + 1) % uv.size()];
             outline.steps.push_back({from,
