@@ -7,8 +7,6 @@
 #include <numbers>
 
 #include "kernel/contour/arc.h"
-#include "kernel/geometry/tolerance.h"
-#include "kernel/section/face_heights.h"
 #include "kernel/section/face_outline.h"
 
 namespace lyr {
@@ -42,20 +40,18 @@ const Frame* axis_frame(const Surface& surface) {
     return nullptr;
 }
 
-// All directions around the axis are one at a cone's apex: an outline that passes it has the directions of its
-// neighbours there, one after the other.
-std::vector<Point2> turned_at_apex(const Surface& surface, const std::vector<Point3>& points,
-                                   const std::vector<Point2>& uv) {
-    const auto* cone = std::get_if<Cone>(&surface);
-    if (!cone) return uv;
+// An outline that passes a pole has its neighbours' values of the free parameter there, one after the other.
+std::vector<Point2> turned_at_poles(const std::vector<Pole>& poles,
+                                    const std::vector<Point3>& points,
+                                    const std::vector<Point2>& uv) {
     std::vector<Point2> result;
     for (std::size_t i = 0; i < uv.size(); ++i) {
-        if ((points[i] - apex_of(*cone)).norm() > resolution_mm) {
-            result.push_back(uv[i]);
-            continue;
-        }
-        result.emplace_back(uv[(i + uv.size() - 1) % uv.size()].x(), uv[i].y());
-        result.emplace_back(uv[(i + 1) % uv.size()].x(), uv[i].y());
+        const Pole* pole = pole_at(poles, points[i]);
+        result.push_back(uv[i]);
+        if (!pole) continue;
+        result.push_back(uv[i]);
+        result[result.size() - 2][pole->free] = uv[(i + uv.size() - 1) % uv.size()][pole->free];
+        result[result.size() - 1][pole->free] = uv[(i + 1) % uv.size()][pole->free];
     }
     return result;
 }
@@ -140,8 +136,9 @@ Outline Containment::prepared(const std::vector<Point3>& points, double height_m
     const Frame* axis = axis_frame(surface_);
     if (axis) outline.winding = winding_around(*axis, points);
     if (!axis || for_parameters_) {
+        const auto poles = for_parameters_ ? poles_of(surface_) : std::vector<Pole>();
         const std::vector<Point2> uv =
-            turned_at_apex(surface_, points, parameters_along(surface_, points));
+            turned_at_poles(poles, points, parameters_along(surface_, points, poles));
         for (std::size_t i = 0; i < uv.size(); ++i) {
             const Point2 &from = uv[i], &to = uv[(i + 1) % uv.size()];
             outline.steps.push_back({from,

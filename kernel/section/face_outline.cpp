@@ -2,7 +2,12 @@
 
 #include <algorithm>
 #include <numbers>
+#include <optional>
 #include <utility>
+
+#include "kernel/brep/parameter_loops.h"
+#include "kernel/geometry/tolerance.h"
+#include "kernel/section/face_heights.h"
 
 namespace lyr {
 namespace {
@@ -52,18 +57,42 @@ std::vector<Coedge> bounding_coedges(const Model& model, const Face& face) {
     return all;
 }
 
-std::vector<Point2> parameters_along(const Surface& surface, const std::vector<Point3>& points) {
+std::vector<Pole> poles_of(const Surface& surface) {
+    if (const auto* cone = std::get_if<Cone>(&surface)) return {{apex_of(*cone), 0}};
+    const auto* spline = std::get_if<SharedBSplineSurface>(&surface);
+    std::vector<Pole> poles;
+    for (const bool along_u : {true, false}) {
+        for (const bool at_end : {false, true}) {
+            const auto pole = spline ? pole_of(**spline, along_u, at_end) : std::nullopt;
+            if (pole) poles.push_back({*pole, along_u ? 0 : 1});
+        }
+    }
+    return poles;
+}
+
+const Pole* pole_at(const std::vector<Pole>& poles, const Point3& point) {
+    for (const Pole& pole : poles)
+        if ((point - pole.point).norm() <= resolution_mm) return &pole;
+    return nullptr;
+}
+
+std::vector<Point2> parameters_along(const Surface& surface, const std::vector<Point3>& points,
+                                     const std::vector<Pole>& poles) {
     const auto* spline = std::get_if<SharedBSplineSurface>(&surface);
     std::vector<Point2> result;
+    std::size_t followed = 0;  // points since the last one that was searched for
     for (const Point3& point : points) {
         const std::size_t n = result.size();
+        const bool is_pole = pole_at(poles, point) != nullptr;
         // Searched for once; from there on, points follow each other evenly, but for the corners.
-        if (!spline || n == 0) {
+        if (!spline || followed == 0 || is_pole) {
             result.push_back(invert(surface, point));
         } else {
-            const Point2 guess = n > 1 ? Point2(2 * result[n - 1] - result[n - 2]) : result[n - 1];
+            const Point2 guess =
+                followed > 1 ? Point2(2 * result[n - 1] - result[n - 2]) : result[n - 1];
             result.push_back(invert_near(**spline, point, guess));
         }
+        followed = is_pole ? 0 : followed + 1;
     }
     return result;
 }
