@@ -40,6 +40,22 @@ const Frame* axis_frame(const Surface& surface) {
     return nullptr;
 }
 
+// An outline that passes a pole has its neighbours' values of the free parameter there, one after the other.
+std::vector<Point2> turned_at_poles(const std::vector<Pole>& poles,
+                                    const std::vector<Point3>& points,
+                                    const std::vector<Point2>& uv) {
+    std::vector<Point2> result;
+    for (std::size_t i = 0; i < uv.size(); ++i) {
+        const Pole* pole = pole_at(poles, points[i]);
+        result.push_back(uv[i]);
+        if (!pole) continue;
+        result.push_back(uv[i]);
+        result[result.size() - 2][pole->free] = uv[(i + uv.size() - 1) % uv.size()][pole->free];
+        result[result.size() - 1][pole->free] = uv[(i + 1) % uv.size()][pole->free];
+    }
+    return result;
+}
+
 // Each sheet of a torus whose tube crosses the axis is closed at two poles, like a sphere.
 bool is_spindle(const Torus& torus) {
     return torus.minor_mm > torus.major_mm;
@@ -120,7 +136,9 @@ Outline Containment::prepared(const std::vector<Point3>& points, double height_m
     const Frame* axis = axis_frame(surface_);
     if (axis) outline.winding = winding_around(*axis, points);
     if (!axis || for_parameters_) {
-        const std::vector<Point2> uv = parameters_along(surface_, points);
+        const auto poles = for_parameters_ ? poles_of(surface_) : std::vector<Pole>();
+        const std::vector<Point2> uv =
+            turned_at_poles(poles, points, parameters_along(surface_, points, poles));
         for (std::size_t i = 0; i < uv.size(); ++i) {
             const Point2 &from = uv[i], &to = uv[(i + 1) % uv.size()];
             outline.steps.push_back({from,

@@ -39,7 +39,7 @@ struct Outline {
 
 class Containment {
 public:
-    // `for_parameters`: holds_parameters() will be asked of a cylinder or a cone, too.
+    // `for_parameters`: holds_parameters() will be asked of any point, of cylinders and cones too.
     Containment(const Model& model, FaceId face, const std::vector<double>& vertex_level_mm,
                 bool for_parameters = false);
 

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <numbers>
+#include <optional>
 #include <utility>
 
+#include "kernel/brep/parameter_loops.h"
 #include "kernel/brep/surface_foot.h"
 #include "kernel/geometry/tolerance.h"
+#include "kernel/section/face_heights.h"
 
 namespace lyr {
 namespace {
@@ -17,12 +20,19 @@ constexpr double full_turn_rad = 2 * std::numbers::pi;
 constexpr int steps_per_turn = 48;
 constexpr int steps_per_control_point = 8, fully_stepped_points = 16;
 
-// Feet of an outline's points on a B-spline surface. One as far off as neighbours are apart is another place's neighbour.
-std::vector<Point2> feet_of(const BSplineSurface& surface, const std::vector<Point3>& points) {
+// Feet of an outline's points on a B-spline surface, each found near the one before unless that is at a pole. One as far off as
+// neighbours are apart is another place's neighbour.
+std::vector<Point2> feet_of(const BSplineSurface& surface, const std::vector<Point3>& points,
+                            const std::vector<Pole>& poles) {
     constexpr double doubtful_share = 0.125;
     SurfaceFoot foot(surface);
     std::vector<Point2> feet;
     for (std::size_t i = 0; i < points.size(); ++i) {
+        if (pole_at(poles, points[i])) {
+            feet.push_back(invert(surface, points[i]));
+            foot = SurfaceFoot(surface);
+            continue;
+        }
         const double step_mm = i > 0 ? (points[i] - points[i - 1]).norm() : 0;
         foot.move_to(points[i],
                      std::max({resolution_mm, 2 * foot.distance_mm(), doubtful_share * step_mm}));
@@ -69,9 +79,29 @@ std::vector<Coedge> bounding_coedges(const Model& model, const Face& face) {
     return all;
 }
 
-std::vector<Point2> parameters_along(const Surface& surface, const std::vector<Point3>& points) {
+std::vector<Pole> poles_of(const Surface& surface) {
+    if (const auto* cone = std::get_if<Cone>(&surface)) return {{apex_of(*cone), 0}};
+    const auto* spline = std::get_if<SharedBSplineSurface>(&surface);
+    std::vector<Pole> poles;
+    for (const bool along_u : {true, false}) {
+        for (const bool at_end : {false, true}) {
+            const auto pole = spline ? pole_of(**spline, along_u, at_end) : std::nullopt;
+            if (pole) poles.push_back({*pole, along_u ? 0 : 1});
+        }
+    }
+    return poles;
+}
+
+const Pole* pole_at(const std::vector<Pole>& poles, const Point3& point) {
+    for (const Pole& pole : poles)
+        if ((point - pole.point).norm() <= resolution_mm) return &pole;
+    return nullptr;
+}
+
+std::vector<Point2> parameters_along(const Surface& surface, const std::vector<Point3>& points,
+                                     const std::vector<Pole>& poles) {
     if (const auto* spline = std::get_if<SharedBSplineSurface>(&surface))
-        return feet_of(**spline, points);
+        return feet_of(**spline, points, poles);
     std::vector<Point2> result;
     for (const Point3& point : points) result.push_back(invert(surface, point));
     return result;

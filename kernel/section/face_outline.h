@@ -23,8 +23,21 @@ int outline_steps(const Edge& edge);
 // The beginnings of `steps` equal steps, in the coedge's direction.
 void append_outline(const Edge& edge, bool reversed, int steps, std::vector<Point3>& points);
 
-// Of points that follow each other closely.
-std::vector<Point2> parameters_along(const Surface& surface, const std::vector<Point3>& points);
+// An apex or a pole: all values of one parameter, `free`, are the same point.
+struct Pole {
+    Point3 point;
+    Eigen::Index free;
+};
+
+// Of a cone or a free-form surface.
+std::vector<Pole> poles_of(const Surface& surface);
+
+// The one that the point is; null: none.
+const Pole* pole_at(const std::vector<Pole>& poles, const Point3& point);
+
+// Of points that follow each other closely. At one of the poles given, the free parameter is any.
+std::vector<Point2> parameters_along(const Surface& surface, const std::vector<Point3>& points,
+                                     const std::vector<Pole>& poles = {});
 
 // Of each parameter; 0: the surface is not closed that way.
 std::array<double, 2> parameter_periods(const Surface& surface);

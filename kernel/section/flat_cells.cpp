@@ -11,7 +11,6 @@
 #include <optional>
 #include <utility>
 
-#include "kernel/geometry/tolerance.h"
 #include "kernel/section/containment.h"
 #include "kernel/section/face_outline.h"
 #include "kernel/section/parameter_cell.h"
@@ -41,16 +40,6 @@ constexpr int most_halvings = 100;
 // are not close.
 constexpr std::size_t most_divided = std::size_t{1} << 20;
 
-// At an apex or a pole all values of a parameter are the same point: an edge that ends there has its neighbour's.
-void keep_near(const Surface& surface, Point2& uv, const Point2& neighbour) {
-    const Point3 point = evaluate(surface, uv);
-    for (const Eigen::Index k : {0, 1}) {
-        Point2 other = uv;
-        other[k] = neighbour[k];
-        if ((evaluate(surface, other) - point).norm() <= resolution_mm) uv = other;
-    }
-}
-
 // A stretch of the boundary lies in each. Through a seam, a box runs on beyond the period.
 std::vector<CellRect> boundary_boxes(const Model& model, const Face& face) {
     const auto period = parameter_periods(face.surface);
@@ -58,15 +47,19 @@ std::vector<CellRect> boundary_boxes(const Model& model, const Face& face) {
         return Vector2(short_way(to.x() - from.x(), period[0]),
                        short_way(to.y() - from.y(), period[1]));
     };
+    const std::vector<Pole> poles = poles_of(face.surface);
     std::vector<CellRect> boxes;
     for (const Coedge& coedge : bounding_coedges(model, face)) {
         const Edge& edge = model[coedge.edge];
         std::vector<Point3> points;
         append_outline(edge, coedge.reversed, 2 * outline_steps(edge), points);
         points.push_back(evaluate(edge.curve, coedge.reversed ? edge.t_start : edge.t_end));
-        std::vector<Point2> uv = parameters_along(face.surface, points);
-        keep_near(face.surface, uv.front(), uv[1]);
-        keep_near(face.surface, uv.back(), uv[uv.size() - 2]);
+        std::vector<Point2> uv = parameters_along(face.surface, points, poles);
+        // An edge that ends at a pole comes to it as its neighbour does.
+        if (const Pole* pole = pole_at(poles, points.front()))
+            uv.front()[pole->free] = uv[1][pole->free];
+        if (const Pole* pole = pole_at(poles, points.back()))
+            uv.back()[pole->free] = uv[uv.size() - 2][pole->free];
         for (std::size_t i = 0; i + 2 < uv.size(); i += 2) {
             const Point2 middle = uv[i] + step(uv[i], uv[i + 1]);
             const Point2 end = middle + step(middle, uv[i + 2]);
