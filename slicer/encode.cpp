@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "kernel/region/curve.h"
 #include "kernel/toolpath/layer_order.h"
 #include "slicer/styles.h"
 
@@ -31,6 +32,13 @@ Strand reversed(Strand strand) {
     return strand;
 }
 
+// The same boundary with the material on its other side.
+Contour turned_round(const Contour& contour) {
+    if (const auto* circle = std::get_if<FullCircle>(&contour))
+        return FullCircle{circle->centre, circle->radius_mm, !circle->counter_clockwise};
+    return reversed(Strand{contour}).path;
+}
+
 Point2 end_of(const Strand& strand) {
     const auto* path = std::get_if<Path>(&strand.path);
     return path && !path->segments.empty() ? path->segments.back().end : start_of(strand.path);
@@ -47,10 +55,12 @@ public:
     LayerWriter(const LayerToEncode& layer, const Options& options, format::Quantum quantum)
         : layer_(layer),
           profile_(options.profile),
+          allowed_mm_(options.tolerance().unite_mm()),
           styles_(options.profile, layer.index, layer.span.height_mm()),
           detours_(options.profile.travel.avoid_crossing
-                       ? std::make_optional<Detours>(inner_region(), options.tolerance().unite_mm())
+                       ? std::make_optional<Detours>(inner_region(), allowed_mm_)
                        : std::nullopt),
+          support_moves_(support_order()),
           moves_(order()),
           encoder_(quantum, state()) {}
 
@@ -62,7 +72,7 @@ public:
             append(strand);
             head_ = start_of(strand.path);
         }
-        for (const PrintMove& move : support_moves())
+        for (const PrintMove& move : support_moves_)
             append_piece(layer_.fill.support[move.index], move);
         for (const PrintMove& move : moves_) {
             if (move.is_wall) {
@@ -97,23 +107,55 @@ private:
                             .sequence = profile_.perimeters.first == profile::WallOrder::outer
                                             ? WallSequence::outer_first
                                             : WallSequence::inner_first,
+                            .head = support_end(),
                             .detours = detours_ ? &*detours_ : nullptr});
     }
 
-    // Between parts of the support the head is over the part as often as not.
-    std::vector<PrintMove> support_moves() const {
+    // Where the head is before the part is printed.
+    Point2 support_end() const {
+        if (support_moves_.empty()) return Point2::Zero();
+        const PrintMove& last = support_moves_.back();
+        const OpenPiece ends = ends_of(layer_.fill.support[last.index]);
+        return last.reversed ? ends.first : ends.last;
+    }
+
+    // Between parts of the support the empty head goes around the part, if that is not far.
+    std::vector<PrintMove> support_order() const {
         std::vector<OpenPiece> pieces;
         for (const Piece& piece : layer_.fill.support) pieces.push_back(ends_of(piece));
-        std::vector<PrintMove> moves =
-            layer_order({.region = {}, .walls = {}, .depths = {}, .pieces = pieces});
+        if (pieces.empty()) return {};
+        std::optional<Detours> outside;
+        if (detours_ && !layer_.outlined.outline.empty())
+            outside.emplace(outer_region(pieces), allowed_mm_);
+        std::vector<PrintMove> moves = layer_order({.region = {},
+                                                    .walls = {},
+                                                    .depths = {},
+                                                    .pieces = pieces,
+                                                    .detours = outside ? &*outside : nullptr});
+        // What drips in the air would lie on the next layer.
         for (PrintMove& move : moves) move.travel.crosses = true;
         return moves;
+    }
+
+    // Beside the part, as far as the head may have to go.
+    std::vector<Contour> outer_region(std::span<const OpenPiece> pieces) const {
+        region::Box2 box;
+        for (const OpenPiece& piece : pieces) box.extend(piece.first).extend(piece.last);
+        std::vector<Contour> region;
+        for (const Contour& contour : layer_.outlined.outline) {
+            box.extend(region::box_of(contour));
+            region.push_back(turned_round(contour));
+        }
+        const Vector2 margin = Vector2::Constant(Detours::default_extra_mm);
+        const Point2 low = box.min() - margin, high = box.max() + margin;
+        region.push_back(Path{low, {{{high.x(), low.y()}}, {high}, {{low.x(), high.y()}}, {low}}});
+        return region;
     }
 
     Point2 first_point() const {
         if (!layer_.fill.around.empty())
             return start_of(std::get<Strand>(layer_.fill.around.front().way).path);
-        if (!layer_.fill.support.empty()) return support_moves().front().seam.point;
+        if (!layer_.fill.support.empty()) return support_moves_.front().seam.point;
         return moves_.empty() ? Point2::Zero() : moves_.front().seam.point;
     }
 
@@ -298,9 +340,10 @@ private:
 
     const LayerToEncode& layer_;
     const profile::Profile& profile_;
+    double allowed_mm_;
     Styles styles_;
     std::optional<Detours> detours_;
-    std::vector<PrintMove> moves_;
+    std::vector<PrintMove> support_moves_, moves_;
     double fan_ = 0;
     bool retracted_ = false;
     std::optional<Point2> head_;
