@@ -5,9 +5,9 @@
 #include <numbers>
 #include <utility>
 
-#include "kernel/region/curve.h"
 #include "kernel/toolpath/layer_order.h"
 #include "slicer/styles.h"
+#include "slicer/support_order.h"
 
 namespace lyr::slicer {
 namespace {
@@ -32,13 +32,6 @@ Strand reversed(Strand strand) {
     return strand;
 }
 
-// The same boundary with the material on its other side.
-Contour turned_round(const Contour& contour) {
-    if (const auto* circle = std::get_if<FullCircle>(&contour))
-        return FullCircle{circle->centre, circle->radius_mm, !circle->counter_clockwise};
-    return reversed(Strand{contour}).path;
-}
-
 Point2 end_of(const Strand& strand) {
     const auto* path = std::get_if<Path>(&strand.path);
     return path && !path->segments.empty() ? path->segments.back().end : start_of(strand.path);
@@ -60,7 +53,6 @@ public:
           detours_(options.profile.travel.avoid_crossing
                        ? std::make_optional<Detours>(inner_region(), allowed_mm_)
                        : std::nullopt),
-          support_moves_(support_order()),
           moves_(order()),
           encoder_(quantum, state()) {}
 
@@ -72,13 +64,11 @@ public:
             append(strand);
             head_ = start_of(strand.path);
         }
-        for (const PrintMove& move : support_moves_)
-            append_piece(layer_.fill.support[move.index], move);
         for (const PrintMove& move : moves_) {
             if (move.is_wall) {
                 append_wall(move);
             } else {
-                append_piece(layer_.fill.pieces[move.index], move);
+                append_piece(move);
             }
         }
         if (retracts()) encoder_.retract();
@@ -95,67 +85,35 @@ private:
         return region;
     }
 
+    // The support, then the part.
     std::vector<PrintMove> order() const {
         std::vector<OpenPiece> pieces;
         for (const Piece& piece : layer_.fill.pieces) pieces.push_back(ends_of(piece));
+        const auto support = std::span(pieces).first(layer_.fill.support);
+        const Region outline = layer_.outlined.outline;
+        std::vector<PrintMove> moves =
+            support_order(support, detours_ ? outline : Region(), allowed_mm_);
         const Walls& walls = layer_.outlined.walls;
-        return layer_order({.region = layer_.outlined.outline,
-                            .walls = walls.strands,
-                            .depths = walls.depths,
-                            .seams = layer_.seams,
-                            .pieces = pieces,
-                            .sequence = profile_.perimeters.first == profile::WallOrder::outer
-                                            ? WallSequence::outer_first
-                                            : WallSequence::inner_first,
-                            .head = support_end(),
-                            .detours = detours_ ? &*detours_ : nullptr});
-    }
-
-    // Where the head is before the part is printed.
-    Point2 support_end() const {
-        if (support_moves_.empty()) return Point2::Zero();
-        const PrintMove& last = support_moves_.back();
-        const OpenPiece ends = ends_of(layer_.fill.support[last.index]);
-        return last.reversed ? ends.first : ends.last;
-    }
-
-    // Between parts of the support the empty head goes around the part, if that is not far.
-    std::vector<PrintMove> support_order() const {
-        std::vector<OpenPiece> pieces;
-        for (const Piece& piece : layer_.fill.support) pieces.push_back(ends_of(piece));
-        if (pieces.empty()) return {};
-        std::optional<Detours> outside;
-        if (detours_ && !layer_.outlined.outline.empty())
-            outside.emplace(outer_region(pieces), allowed_mm_);
-        std::vector<PrintMove> moves = layer_order({.region = {},
-                                                    .walls = {},
-                                                    .depths = {},
-                                                    .pieces = pieces,
-                                                    .detours = outside ? &*outside : nullptr});
-        // What drips in the air would lie on the next layer.
-        for (PrintMove& move : moves) move.travel.crosses = true;
+        std::vector<PrintMove> part =
+            layer_order({.region = outline,
+                         .walls = walls.strands,
+                         .depths = walls.depths,
+                         .seams = layer_.seams,
+                         .pieces = std::span(pieces).subspan(support.size()),
+                         .sequence = profile_.perimeters.first == profile::WallOrder::outer
+                                         ? WallSequence::outer_first
+                                         : WallSequence::inner_first,
+                         .head = head_after(moves, support),
+                         .detours = detours_ ? &*detours_ : nullptr});
+        for (PrintMove& move : part)
+            if (!move.is_wall) move.index += static_cast<std::uint32_t>(support.size());
+        moves.insert(moves.end(), part.begin(), part.end());
         return moves;
-    }
-
-    // Beside the part, as far as the head may have to go.
-    std::vector<Contour> outer_region(std::span<const OpenPiece> pieces) const {
-        region::Box2 box;
-        for (const OpenPiece& piece : pieces) box.extend(piece.first).extend(piece.last);
-        std::vector<Contour> region;
-        for (const Contour& contour : layer_.outlined.outline) {
-            box.extend(region::box_of(contour));
-            region.push_back(turned_round(contour));
-        }
-        const Vector2 margin = Vector2::Constant(Detours::default_extra_mm);
-        const Point2 low = box.min() - margin, high = box.max() + margin;
-        region.push_back(Path{low, {{{high.x(), low.y()}}, {high}, {{low.x(), high.y()}}, {low}}});
-        return region;
     }
 
     Point2 first_point() const {
         if (!layer_.fill.around.empty())
             return start_of(std::get<Strand>(layer_.fill.around.front().way).path);
-        if (!layer_.fill.support.empty()) return support_moves_.front().seam.point;
         return moves_.empty() ? Point2::Zero() : moves_.front().seam.point;
     }
 
@@ -197,7 +155,6 @@ private:
         const Walls& walls = layer_.outlined.walls;
         for (std::size_t i = 0; i < walls.strands.size(); ++i)
             add(wall_style(i), lyr::length_mm(walls.strands[i].path));
-        for (const Piece& piece : layer_.fill.support) add(piece_style(piece), length_mm(piece));
         for (const Piece& piece : layer_.fill.pieces) add(piece_style(piece), length_mm(piece));
         return time_s;
     }
@@ -273,7 +230,8 @@ private:
         head_ = move.seam.point;
     }
 
-    void append_piece(const Piece& piece, const PrintMove& move) {
+    void append_piece(const PrintMove& move) {
+        const Piece& piece = layer_.fill.pieces[move.index];
         const bool bridges = piece.role == Role::bridge;
         travel(move.travel, move.seam.point);
         if (bridges) encoder_.fan(0, profile_.bridge.fan);
@@ -343,7 +301,7 @@ private:
     double allowed_mm_;
     Styles styles_;
     std::optional<Detours> detours_;
-    std::vector<PrintMove> support_moves_, moves_;
+    std::vector<PrintMove> moves_;
     double fan_ = 0;
     bool retracted_ = false;
     std::optional<Point2> head_;

@@ -2,6 +2,7 @@
 // Layers are made on several threads and taken in order.
 
 #include <cstdio>
+#include <iterator>
 #include <optional>
 #include <span>
 
@@ -163,11 +164,15 @@ LayerFill fill_of(std::size_t i, const LayerSpan& span, const OutlinedLayer& out
     LayerFill fill;
     if (i < raft) {
         const auto footprint = support.with_part(raft, options, fill.unresolved);
-        fill.support = raft_pieces(i, footprint, options, fill.unresolved);
+        fill.pieces = raft_pieces(i, footprint, options, fill.unresolved);
+        fill.support = fill.pieces.size();
         return fill;
     }
     fill = fill_layer(i - raft, span, outlined.walls, outlines.subspan(raft), options);
-    fill.support = support.pieces(i, options, fill.unresolved);
+    std::vector<Piece> pieces = support.pieces(i, options, fill.unresolved);
+    fill.support = pieces.size();
+    fill.pieces.insert(fill.pieces.begin(), std::make_move_iterator(pieces.begin()),
+                       std::make_move_iterator(pieces.end()));
     if (i == 0)
         fill.around = adhesion_of(support.with_part(i, options, fill.unresolved), span.height_mm(),
                                   options, fill.unresolved);
