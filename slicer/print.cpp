@@ -2,7 +2,6 @@
 // Layers are made on several threads and taken in order.
 
 #include <cstdio>
-#include <iterator>
 #include <optional>
 #include <span>
 
@@ -11,13 +10,12 @@
 #include "format/writer.h"
 #include "kernel/brep/placement.h"
 #include "kernel/toolpath/layer_order.h"
-#include "slicer/adhesion.h"
 #include "slicer/bounds.h"
 #include "slicer/encode.h"
 #include "slicer/layers.h"
+#include "slicer/print_fill.h"
 #include "slicer/raft.h"
 #include "slicer/slicer.h"
-#include "slicer/support.h"
 
 namespace lyr::slicer {
 namespace {
@@ -156,34 +154,11 @@ struct FilledLayer {
     std::optional<Diagnostic> error{};
 };
 
-// What is printed besides walls: of the raft, or of the part with what stands around it.
-LayerFill fill_of(std::size_t i, const LayerSpan& span, const OutlinedLayer& outlined,
-                  std::span<const SkinOutline> outlines, const SupportPlan& support,
-                  const Options& options) {
-    const std::size_t raft = raft_layers(options.profile);
-    LayerFill fill;
-    if (i < raft) {
-        const auto footprint = support.with_part(raft, options, fill.unresolved);
-        fill.pieces = raft_pieces(i, footprint, options, fill.unresolved);
-        fill.support = fill.pieces.size();
-        return fill;
-    }
-    fill = fill_layer(i - raft, span, outlined.walls, outlines.subspan(raft), options);
-    std::vector<Piece> pieces = support.pieces(i, options, fill.unresolved);
-    fill.support = pieces.size();
-    fill.pieces.insert(fill.pieces.begin(), std::make_move_iterator(pieces.begin()),
-                       std::make_move_iterator(pieces.end()));
-    if (i == 0)
-        fill.around = adhesion_of(support.with_part(i, options, fill.unresolved), span.height_mm(),
-                                  options, fill.unresolved);
-    return fill;
-}
-
 FilledLayer fill_and_encode(std::size_t i, const LayerSpan& span, const OutlinedLayer& outlined,
                             std::span<const SkinOutline> outlines, std::span<const Seam> seams,
                             const SupportPlan& support, const Options& options,
                             const Estimator& estimator) {
-    const LayerFill fill = fill_of(i, span, outlined, outlines, support, options);
+    const LayerFill fill = print_fill(i, span, outlined.walls, outlines, support, options);
     FilledLayer made{.unresolved = fill.unresolved};
     auto encoded =
         encode_layer({i, span, outlined, fill, seams}, options, quantum_for(options.tolerance()));
