@@ -7,6 +7,7 @@
 
 #include "kernel/toolpath/layer_order.h"
 #include "slicer/styles.h"
+#include "slicer/support_order.h"
 #include "slicer/wipe.h"
 
 namespace lyr::slicer {
@@ -61,7 +62,6 @@ private:
         if (!layer_.skirt.empty()) return start_of(layer_.skirt.front());
         const Vector2& shift = layer_.copies.front().shift;
         if (!layer_.fill.around.empty()) return start_of(layer_.fill.around.front()) + shift;
-        if (!layer_.support_moves.empty()) return layer_.support_moves.front().seam.point + shift;
         return (layer_.moves.empty() ? corner() : layer_.moves.front().seam.point) + shift;
     }
 
@@ -73,8 +73,7 @@ private:
     }
 
     void append(const Copy& copy) {
-        const bool is_empty =
-            layer_.fill.around.empty() && layer_.support_moves.empty() && layer_.moves.empty();
+        const bool is_empty = layer_.fill.around.empty() && layer_.moves.empty();
         if (is_empty && layer_.copies.size() > 1) return;
         if (head_) *head_ += shift_ - copy.shift;
         shift_ = copy.shift;
@@ -82,13 +81,11 @@ private:
         object_ = copy.object;
         enters_ = head_.has_value();
         append_around(layer_.fill.around);
-        for (const PrintMove& move : layer_.support_moves)
-            append_piece(layer_.fill.support[move.index], move);
         for (const PrintMove& move : layer_.moves) {
             if (move.is_wall) {
                 append_wall(move);
             } else {
-                append_piece(layer_.fill.pieces[move.index], move);
+                append_piece(move);
             }
         }
     }
@@ -142,7 +139,6 @@ private:
         const Walls& walls = layer_.outlined.walls;
         for (std::size_t i = 0; i < walls.strands.size(); ++i)
             add(wall_style(i), lyr::length_mm(walls.strands[i].path));
-        for (const Piece& piece : layer_.fill.support) add(piece_style(piece), length_mm(piece));
         for (const Piece& piece : layer_.fill.pieces) add(piece_style(piece), length_mm(piece));
         return time_s * static_cast<double>(layer_.copies.size());
     }
@@ -192,8 +188,7 @@ private:
 
     // The order was planned without what lies around and other copies: nobody looked at the way from there.
     const Travel& way_to(const PrintMove& move) const {
-        const bool is_first = !layer_.moves.empty() && &move == &layer_.moves.front();
-        return is_first ? straight_ : move.travel;
+        return &move == &layer_.moves.front() ? straight_ : move.travel;
     }
 
     void travel(const Travel& way, const Point2& to) {
@@ -249,7 +244,8 @@ private:
         head_ = move.seam.point;
     }
 
-    void append_piece(const Piece& piece, const PrintMove& move) {
+    void append_piece(const PrintMove& move) {
+        const Piece& piece = layer_.fill.pieces[move.index];
         const bool bridges = piece.role == Role::bridge;
         travel(way_to(move), move.seam.point);
         if (bridges) encoder_.fan(0, profile_.bridge.fan);
@@ -346,32 +342,31 @@ std::vector<Contour> inner_region(const Walls& walls) {
 
 }  // namespace
 
+// The support, then the part.
 std::vector<PrintMove> order_layer(const OutlinedLayer& outlined, const LayerFill& fill,
                                    std::span<const Seam> seams, const Options& options) {
     const Walls& walls = outlined.walls;
+    const Region outline = outlined.outline;
+    const double allowed_mm = options.tolerance().unite_mm();
     std::vector<OpenPiece> pieces;
     for (const Piece& piece : fill.pieces) pieces.push_back(ends_of(piece));
     std::optional<Detours> detours;
-    if (options.profile.travel.avoid_crossing)
-        detours.emplace(inner_region(walls), options.tolerance().unite_mm());
+    if (options.profile.travel.avoid_crossing) detours.emplace(inner_region(walls), allowed_mm);
+    const auto support = std::span<const OpenPiece>(pieces).first(fill.support);
+    std::vector<PrintMove> moves = support_order(support, detours ? outline : Region(), allowed_mm);
     const bool outer_first = options.profile.perimeters.first == profile::WallOrder::outer;
-    return layer_order(
-        {.region = outlined.outline,
+    std::vector<PrintMove> part = layer_order(
+        {.region = outline,
          .walls = walls.strands,
          .depths = walls.depths,
          .seams = seams,
-         .pieces = pieces,
+         .pieces = std::span<const OpenPiece>(pieces).subspan(support.size()),
          .sequence = outer_first ? WallSequence::outer_first : WallSequence::inner_first,
+         .head = head_after(moves, support),
          .detours = detours ? &*detours : nullptr});
-}
-
-std::vector<PrintMove> order_support(const LayerFill& fill) {
-    std::vector<OpenPiece> pieces;
-    for (const Piece& piece : fill.support) pieces.push_back(ends_of(piece));
-    std::vector<PrintMove> moves =
-        layer_order({.region = {}, .walls = {}, .depths = {}, .pieces = pieces});
-    // Between parts of the support the head is over the part as often as not.
-    for (PrintMove& move : moves) move.travel.crosses = true;
+    for (PrintMove& move : part)
+        if (!move.is_wall) move.index += static_cast<std::uint32_t>(support.size());
+    moves.insert(moves.end(), part.begin(), part.end());
     return moves;
 }
 

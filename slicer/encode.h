@@ -23,9 +23,8 @@ struct LayerToEncode {
     const OutlinedLayer& outlined;
     const LayerFill& fill;
     std::span<const PrintMove> moves;
-    std::span<const PrintMove> support_moves;  // of the fill's support, printed before
-    std::span<const Copy> copies;              // printed one after the other
-    std::span<const Piece> skirt{};            // around all of them, printed first
+    std::span<const Copy> copies;    // printed one after the other
+    std::span<const Piece> skirt{};  // around all of them, printed first
     bool begins_print = false;
     double lift_mm = 0;  // of the head, when all is done
 };
@@ -38,9 +37,6 @@ SeamChoice seam_choice(profile::Seam seam);
 // The sequence of a layer's walls and pieces. `seams` are those of the outermost walls; none: next to the head.
 std::vector<PrintMove> order_layer(const OutlinedLayer& outlined, const LayerFill& fill,
                                    std::span<const Seam> seams, const Options& options);
-
-// The sequence of a layer's support.
-std::vector<PrintMove> order_support(const LayerFill& fill);
 
 // Errors are internal: a number that the file cannot hold.
 Result<format::EncodedLayer> encode_layer(const LayerToEncode& layer, const Options& options,

@@ -22,9 +22,10 @@ struct Piece {
 double length_mm(const Piece& piece);
 
 struct LayerFill {
-    std::vector<Piece> around{};   // closed, to be printed before everything else, in this order
-    std::vector<Piece> support{};  // to be printed next
+    std::vector<Piece> around{};  // closed, to be printed before everything else, in this order
     std::vector<Piece> pieces{};
+    std::size_t support =
+        0;  // so many of the pieces, the first ones: before the part, from support or raft
     std::size_t unresolved = 0;
 };
 

@@ -11,7 +11,7 @@
 #include "slicer/adhesion.h"
 #include "slicer/encode.h"
 #include "slicer/layers.h"
-#include "slicer/raft.h"
+#include "slicer/print_fill.h"
 
 namespace lyr::slicer {
 namespace {
@@ -35,7 +35,7 @@ std::vector<SkinOutline> skin_outlines(std::span<const OutlinedLayer> layers) {
 // All of a layer of one copy, in the order in which it is printed.
 struct PlannedLayer {
     LayerFill fill{};
-    std::vector<PrintMove> moves{}, support_moves{};
+    std::vector<PrintMove> moves{};
     std::vector<Piece> skirt{};  // around all copies
 };
 
@@ -55,30 +55,11 @@ struct Job {
     std::vector<SkinOutline> outlines{skin_outlines(in.layers)};
 };
 
-// What is printed besides walls: of the raft, or of the part with what stands around it.
-LayerFill fill_of(std::size_t i, const Job& job) {
-    const Options& options = job.in.options;
-    const SupportPlan& support = job.in.support;
-    const std::size_t raft = raft_layers(options.profile);
-    LayerFill fill;
-    if (i < raft) {
-        const auto footprint = support.with_part(raft, options, fill.unresolved);
-        fill.support = raft_pieces(i, footprint, options, fill.unresolved);
-        return fill;
-    }
-    fill = fill_layer(i - raft, job.in.spans[i], job.in.layers[i].walls,
-                      std::span(job.outlines).subspan(raft), options);
-    fill.support = support.pieces(i, options, fill.unresolved);
-    if (i == 0)
-        fill.around = adhesion_of(support.with_part(i, options, fill.unresolved),
-                                  job.in.spans[i].height_mm(), options, fill.unresolved);
-    return fill;
-}
-
 PlannedLayer planned(std::size_t i, const Job& job) {
     const OutlinedLayer& outlined = job.in.layers[i];
     const Options& options = job.in.options;
-    PlannedLayer made{.fill = fill_of(i, job)};
+    PlannedLayer made{.fill = print_fill(i, job.in.spans[i], outlined.walls, job.outlines,
+                                         job.in.support, options)};
     if (options.profile.adhesion.kind == profile::AdhesionKind::skirt) {
         made.skirt = std::exchange(made.fill.around, {});
         if (i == 0 && job.in.plate.shifts.size() > 1)
@@ -86,7 +67,6 @@ PlannedLayer planned(std::size_t i, const Job& job) {
                                      made.fill.unresolved);
     }
     made.moves = order_layer(outlined, made.fill, job.seams[i], options);
-    made.support_moves = order_support(made.fill);
     return made;
 }
 
@@ -99,7 +79,6 @@ TimedLayer encoded(std::size_t i, const Job& job, const PlannedLayer& planned,
                                .outlined = job.in.layers[i],
                                .fill = planned.fill,
                                .moves = planned.moves,
-                               .support_moves = planned.support_moves,
                                .copies = copies,
                                .skirt = begins_print ? planned.skirt : std::span<const Piece>(),
                                .begins_print = begins_print,

@@ -5,9 +5,11 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "format/reader.h"
 #include "kernel/brep/assembly.h"
 #include "kernel/brep/placement.h"
 #include "kernel/solids.h"
@@ -185,6 +187,12 @@ double held_share(const Supported& s, Leans leans) {
     }
     REQUIRE(all > 0);
     return static_cast<double>(held) / static_cast<double>(all);
+}
+
+std::string scratch(const std::string& name) {
+    const std::string folder = std::string(LYR_BUILD) + "/test-support/";
+    std::filesystem::create_directories(folder);
+    return folder + name;
 }
 
 const auto anywhere = [](const Point3&) { return true; };
@@ -376,4 +384,40 @@ TEST_CASE("support 4: an overhang with no room under it is warned of") {
     REQUIRE(s.diagnostics.size() == 1);
     CHECK(s.diagnostics[0].message.find("no room for support") != std::string::npos);
     CHECK(s.diagnostics[0].where.layer > 0);
+}
+
+TEST_CASE("support: between its parts the head goes around the part") {
+    const std::string lyr = scratch("table.lyr");
+    Diagnostics diagnostics;
+    REQUIRE(print(
+        table(), "table", lyr, "", grid(), [](const char*, std::size_t, std::size_t) {},
+        diagnostics));
+    auto reader = format::Reader::open(lyr);
+    REQUIRE(reader);
+    const double quantum_mm = reader->header().quantum.nm * 1e-6;
+    // The post's middle is that of the plate, whose corner is at the origin.
+    const auto from_post = [&](const format::Point& point) {
+        return Point2(quantum_mm * static_cast<double>(point.x) - 7,
+                      quantum_mm * static_cast<double>(point.y) - 5);
+    };
+    std::size_t around = 0;
+    bool in_support = false;
+    for (;;) {
+        const auto next = reader->next();
+        REQUIRE(next);
+        if (!*next) break;
+        if (std::holds_alternative<format::LayerStart>(**next)) in_support = false;
+        if (const auto* start = std::get_if<format::PathStart>(&**next))
+            in_support = start->style.role == format::Role::support;
+        const auto* travel = std::get_if<format::Travel>(&**next);
+        if (!travel || !in_support || travel->hatch) continue;
+        const Point2 from = from_post(travel->from), to = from_post(travel->to);
+        if (to.norm() < 2 || from == to) continue;  // to the part's own wall
+        const Vector2 way = to - from;
+        const double share = std::clamp(-from.dot(way) / way.squaredNorm(), 0.0, 1.0);
+        const double reach_mm = (from + share * way).norm();
+        CHECK(reach_mm > 2 - 0.01);
+        around += reach_mm < 2.3;
+    }
+    CHECK(around > 10);
 }
