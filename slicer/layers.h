@@ -29,10 +29,10 @@ unsigned thread_count(const Options& options);
 void on_threads(unsigned threads, const std::function<void()>& work);
 
 // Calls make(i) for i < count on `threads` threads and take(i, result) in order of i, on this thread.
-// Batches keep no more than a few results a thread waiting. take() may return false to stop.
+// Batches keep no more than so many results a thread waiting. take() may return false to stop.
 template <class Make, class Take>
 bool in_order(std::size_t count, unsigned threads, Make make, Take take) {
-    constexpr std::size_t batch_per_thread = 16;
+    constexpr std::size_t batch_per_thread = 64;
     using Item = decltype(make(std::size_t{}));
     for (std::size_t first = 0; first < count;) {
         const std::size_t size = std::min(count - first, batch_per_thread * threads);

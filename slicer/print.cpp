@@ -1,6 +1,7 @@
 // The print: the model is put on the bed; its layers are cut and get their walls, then their seams, then fill and order.
 // Layers are made on several threads and taken in order.
 
+#include <atomic>
 #include <cstdio>
 #include <optional>
 #include <span>
@@ -150,6 +151,19 @@ format::Metadata metadata(const std::string& source_name, std::size_t copies,
     return data;
 }
 
+// On several threads, face by face.
+void prepare(const Cutter& cutter, std::size_t faces, std::span<const LayerSpan> spans,
+             unsigned threads) {
+    if (threads < 2) return;
+    std::vector<double> heights_mm;
+    for (const LayerSpan& span : spans) heights_mm.push_back(span.middle_mm());
+    std::atomic<std::uint32_t> next{0};
+    on_threads(threads, [&] {
+        for (std::uint32_t face; (face = next.fetch_add(1)) < faces;)
+            cutter.prepare(FaceId{face}, heights_mm);
+    });
+}
+
 // Outlines and walls of all layers, with what is wrong.
 Result<std::vector<OutlinedLayer>> outlined(const Cutter& cutter, std::span<const LayerSpan> spans,
                                             const Options& options, const Progress& progress,
@@ -210,6 +224,7 @@ Result<Summary> print(Model model, const std::string& source_name, const std::st
         report.emplace(std::move(*opened));
     }
     const Cutter cutter(placed, options.tolerance());
+    prepare(cutter, placed.faces.size(), spans, thread_count(options));
     const auto layers = outlined(cutter, spans, options, progress, summary, diagnostics);
     if (!layers) return layers.error();
     SupportPlan support(*layers, spans, raft_layers(options.profile));

@@ -151,6 +151,16 @@ const Containment& Cutter::containment(FaceId face) const {
     return containments_[static_cast<std::size_t>(containment_of_[face.value])];
 }
 
+void Cutter::prepare(FaceId face, std::span<const double> heights_mm) const {
+    const auto& freeform = freeform_[face.value];
+    if (!freeform) return;
+    const HeightRange hull = freeform->hull();
+    const auto first = std::lower_bound(heights_mm.begin(), heights_mm.end(), hull.bottom_mm);
+    if (first == heights_mm.end() || *first > hull.top_mm) return;
+    freeform->mesh();
+    freeform->heights();
+}
+
 HeightRange Cutter::height_range() const {
     HeightRange range{infinity, -infinity};
     const auto extend = [&](double z) {

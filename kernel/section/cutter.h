@@ -17,6 +17,7 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "base/diagnostic.h"
@@ -51,6 +52,10 @@ public:
     Cutter(const Model& model, const Tolerance& tolerance);
 
     Section cut(double z_mm) const;
+
+    // Makes what a plane that meets the face would have to make first, if any of these (in rising order) may. On any thread:
+    // threads that cut the same faces wait for each other there.
+    void prepare(FaceId face, std::span<const double> heights_mm) const;
 
     // The section of each face, divided by how far the surface leans out (leaning.h).
     std::vector<LeaningSpan> leaning(double z_mm, double limit_rad) const;
