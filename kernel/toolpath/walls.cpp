@@ -75,9 +75,11 @@ private:
         if (!(depth == 0 ? request_.thin_walls : request_.gap_fill)) return true;
         const std::vector<Contour>& before = depth == 0 ? base_ : inner(depth - 1);
         const double before_mm = depth == 0 ? 0 : middle_mm(depth - 1);
-        return (is_even(before, inner(depth), middle_mm(depth) - before_mm) &&
-                is_even(inner(depth), inner(depth + 1), middle_mm(depth + 1) - middle_mm(depth))) ||
-               is_roomy(depth);
+        const bool reaches = is_even(before, inner(depth), middle_mm(depth) - before_mm);
+        if (reaches &&
+            is_even(inner(depth), inner(depth + 1), middle_mm(depth + 1) - middle_mm(depth)))
+            return true;
+        return !is_narrow(depth) && (reaches || is_reached(outer(depth), depth));
     }
 
     // Whether the boundaries at two distances are what an even change leads to from one to the other.
@@ -87,15 +89,19 @@ private:
         return std::abs(between - expected) <= unseen_mm * unseen_mm;
     }
 
-    // Whether the wall's sides are not near each other, but for less than is looked into, and together reach all that is
-    // outside of it.
-    bool is_roomy(std::uint32_t depth) {
-        const Boundary boundary(inner(depth));
+    // Whether the wall's sides are near each other along more than is left alone.
+    bool is_narrow(std::uint32_t depth) {
+        return narrow_mm2(Boundary(inner(depth)), least_space_share * spacing_mm_) >
+               unseen_mm * unseen_mm;
+    }
+
+    // Whether the wall, as it is, and its flank are all that the walls before leave outside of it.
+    bool is_reached(Region outside, std::uint32_t depth) {
         const double flank_mm = outwards_mm(depth);
         const double reached_mm2 =
-            area_mm2(inner(depth)) + strip_mm2(boundary, flank_mm, mitre_limit * flank_mm);
-        return area_mm2(outer(depth)) - reached_mm2 <= unseen_mm * unseen_mm &&
-               narrow_mm2(boundary, least_space_share * spacing_mm_) <= unseen_mm * unseen_mm;
+            area_mm2(inner(depth)) +
+            strip_mm2(Boundary(inner(depth)), flank_mm, mitre_limit * flank_mm);
+        return area_mm2(outside) - reached_mm2 <= unseen_mm * unseen_mm;
     }
 
     std::vector<Contour> offset_by(const BoundedRegion& region, double distance_mm, Corner corner) {
@@ -142,6 +148,7 @@ private:
         const std::vector<Contour> outside = outer(depth);
         std::vector<Contour> wall = inner(depth), wide = wide_parts(wall, middle_mm(depth));
         const bool is_cut = area_mm2(wall) - area_mm2(wide) > unseen_mm * unseen_mm;
+        if (!is_cut && is_reached(outside, depth)) return;
         if (is_cut) wall = std::move(wide);
         const std::vector<Contour> covered =
             offset_by(BoundedRegion(wall), outwards_mm(depth), Corner::mitre);
