@@ -36,7 +36,7 @@ public:
           corner_(box.min().x(), box.min().y()),
           size_(box.sizes().x(), box.sizes().y()),
           in_sequence_(plate_.sequential && plate_.copies > 1),
-          one_behind_other_(in_sequence_ && box.sizes().z() > plate_.clearance_height_mm) {
+          one_behind_other_(in_sequence_ && box.max().z() > plate_.clearance_height_mm) {
         const bool has_brim = profile.adhesion.kind == profile::AdhesionKind::brim;
         const double brim_mm = has_brim ? adhesion_reach_mm(profile) : 0;
         gap_mm_ = plate_.spacing_mm + 2 * brim_mm;

@@ -203,7 +203,7 @@ Result<Summary> print(Model model, const std::string& source_name, const std::st
                       const Progress& progress, Diagnostics& diagnostics) {
     Summary summary{.solids = model.solids.size(), .faces = model.faces.size()};
     const Model placed = on_bed(std::move(model), options, summary.box);
-    if (Status checked = check_size(summary.box, options.profile.layer); !checked)
+    if (Status checked = check_size(summary.box, part_layers(options.profile)); !checked)
         return checked.error();
     if (Status checked = check_plate(summary.box, options.profile.plate); !checked)
         return checked.error();

@@ -13,7 +13,7 @@ LayerFill print_fill(std::size_t index, const LayerSpan& span, const Walls& wall
     const std::size_t raft = raft_layers(options.profile);
     LayerFill fill;
     if (index < raft) {
-        const auto footprint = support.with_part(raft, options, fill.unresolved);
+        const auto footprint = support.footprint(options, fill.unresolved);
         fill.pieces = raft_pieces(index, footprint, options, fill.unresolved);
         fill.support = fill.pieces.size();
         return fill;

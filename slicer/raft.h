@@ -1,9 +1,9 @@
 // A raft: layers of its own under the part, which is raised by them and by a gap of air.
 //
 // Contract
-//  1. A raft reaches out beside the part's first layer and its support by 3 mm, across gaps of as much. It has adhesion.raft_layers: of more than one,
-//     the first is thick and half full, so are those over it in the usual thickness; the two on top, or the only one, are
-//     dense. Lines of each lie across those of the layer below, within one wall.
+//  1. A raft reaches out beside the part's first layer and its support by 3 mm, across gaps of as much. It has
+//     adhesion.raft_layers. The two on top, or the only one, are dense, those below half full; of more than one the first
+//     is thick, all others as thick as the part's. Lines of each lie across those of the layer below, within one wall.
 //  2. Over it is adhesion.raft_gap of air. The part's layers follow with layer.height, the first too: layer.first_height,
 //     first_layer speeds, temperatures and fan are those of what is printed first, the raft.
 //  3. Without a raft, nothing is raised and the part has its first layer.

@@ -224,6 +224,14 @@ std::vector<Contour> SupportPlan::with_part(std::size_t layer, const Options& op
     return std::move(both.contours);
 }
 
+std::vector<Contour> SupportPlan::footprint(const Options& options, std::size_t& unresolved) const {
+    std::vector<Contour> first = with_part(first_, options, unresolved);
+    if (area(0).empty()) return first;
+    RegionResult all = combined(first, area(0), Operation::unite, options.tolerance().unite_mm());
+    unresolved += all.unresolved;
+    return std::move(all.contours);
+}
+
 std::vector<Piece> SupportPlan::pieces(std::size_t layer, const Options& options,
                                        std::size_t& unresolved) const {
     std::vector<Piece> pieces;

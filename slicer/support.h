@@ -45,6 +45,10 @@ public:
     std::vector<Contour> with_part(std::size_t layer, const Options& options,
                                    std::size_t& unresolved) const;
 
+    // What a raft is to carry: the part's first layer, its support, and what hangs over so low that its support would begin
+    // within the raft.
+    std::vector<Contour> footprint(const Options& options, std::size_t& unresolved) const;
+
     // Of one layer; on any thread.
     std::vector<Piece> pieces(std::size_t layer, const Options& options,
                               std::size_t& unresolved) const;

@@ -106,7 +106,7 @@ public:
     CurveBuilder(std::vector<Side> sides, const OffsetRequest& request)
         : sides_(std::move(sides)), request_(request), distance_mm_(request.distance_mm) {}
 
-    // False: a parallel is used up, or two do not cross.
+    // False: too little of the contour is left, or too much left out in a row.
     bool trim();
     std::optional<Contour> result();
 

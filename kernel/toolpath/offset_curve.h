@@ -27,7 +27,8 @@ inline constexpr double cusp_rad = 1e-3;
 std::vector<Contour> offset_curves(Region region, const OffsetRequest& request);
 
 // The same curves with each corner's loop cut off where the parallels beside it cross: as long as nothing else crosses,
-// the offset's boundary as it is. None if a parallel is used up, or two that should cross do not.
+// the offset's boundary as it is. None if fewer than two
+// sides of a contour keep a parallel, or more than two distances of them in a row keep none.
 std::optional<std::vector<Contour>> trimmed_curves(Region region, const OffsetRequest& request);
 
 }  // namespace lyr

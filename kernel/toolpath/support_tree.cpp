@@ -188,7 +188,7 @@ private:
         if (branches_.empty()) return;
         const Obstacle blocked(blocked_[i], beside_mm()), collides(collides_[i], beside_mm()),
             clear(rooms_[i].clear, beside_mm());
-        const double step = step_mm(i);
+        const double step = step_mm(i + 1);
         const double wider =
             (levels_[i].top_mm - levels_[i].bottom_mm) * std::tan(request_.growth_angle_rad);
         std::vector<Branch> next;

@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "format/reader.h"
+#include "kernel/brep/assembly.h"
+#include "kernel/brep/placement.h"
 #include "kernel/solids.h"
 #include "slicer/slicer.h"
 
@@ -56,6 +58,10 @@ std::vector<PrintedLayer> printed(const Model& model, const Options& options, Su
         if (const auto* start = std::get_if<format::PathStart>(&**next))
             layers.back().roles.insert(start->style.role);
     }
+}
+
+Model at(Model model, double x, double y, double z) {
+    return transformed(std::move(model), Eigen::Affine3d(Eigen::Translation3d(x, y, z)));
 }
 
 double volume_of(const Summary& summary, format::Role role) {
@@ -119,4 +125,37 @@ TEST_CASE("raft: support stands on it") {
     CHECK(layers[2].roles.contains(format::Role::support));
     CHECK(layers[2].roles.contains(format::Role::outer_wall));
     CHECK(volume_of(summary, format::Role::support) > 5);
+}
+
+TEST_CASE("raft: a part lower than half of its layers on the raft is refused, not printed empty") {
+    for (const auto& [layer_mm, first_mm, is_refused] :
+         {std::tuple(0.3, 0.2, true), {0.3, 0.1, true}, {0.1, 0.3, false}}) {
+        CAPTURE(layer_mm);
+        CAPTURE(first_mm);
+        Options options = with_raft(3);
+        options.profile.layer.height_mm = layer_mm;
+        options.profile.layer.first_height_mm = first_mm;
+        const std::string path = std::string(LYR_BUILD) + "/test-raft-low.lyr";
+        Diagnostics diagnostics;
+        const auto done = print(
+            box(20, 20, 0.12), "low", path, "", options,
+            [](const char*, std::size_t, std::size_t) {}, diagnostics);
+        CHECK(!done == is_refused);
+        if (!done) CHECK(done.error().status == ExitStatus::geometry);
+    }
+}
+
+TEST_CASE("raft: it lies under what hangs over so low that its support would begin within it") {
+    // A plate on two feet of a layer each.
+    Model feet = at(box(3, 20, 0.3), -15.5, 0, 0.15);
+    append(feet, at(box(3, 20, 0.3), 15.5, 0, 0.15));
+    append(feet, at(box(34, 20, 2), 0, 0, 1.2));
+    Options options = with_raft(3);
+    options.profile.support.kind = profile::SupportKind::grid;
+    Summary summary;
+    printed(feet, options, &summary);
+    Options of_feet = with_raft(3);
+    Summary without;
+    printed(feet, of_feet, &without);
+    CHECK(volume_of(summary, format::Role::raft) > 2 * volume_of(without, format::Role::raft));
 }

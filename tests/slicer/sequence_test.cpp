@@ -73,6 +73,10 @@ TEST_CASE("plate 4: copies that meet the gantry lie one behind the other, from t
     CHECK(high->columns == 1);
     for (std::size_t i = 1; i < high->shifts.size(); ++i)
         CHECK(high->shifts[i].y() >= high->shifts[i - 1].y() + depth_mm + 45 - 1e-5);
+    // What stands on a raft is as much higher (its box begins there).
+    const auto raised = lay_out({Vector3(0, 0, 2), Vector3(width_mm, depth_mm, 26)}, profile);
+    REQUIRE(raised);
+    CHECK(raised->columns == 1);
     // Layer by layer nothing stands higher than the nozzle.
     profile::Profile by_layer = profile;
     by_layer.plate.sequential = false;

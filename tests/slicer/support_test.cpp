@@ -85,12 +85,16 @@ struct Supported {
     Diagnostics diagnostics{};
     std::vector<Boundary> parts{}, supports{};
 
-    explicit Supported(const Model& part, const Options& asked = grid()) : options(asked) {
+    // `thicknesses_mm` by turns, instead of layers as the options have them.
+    explicit Supported(const Model& part, const Options& asked = grid(),
+                       const std::vector<double>& thicknesses_mm = {})
+        : options(asked) {
         Model model = part;
         const double low_mm = bounding_box(model, options.tolerance()).min().z();
         model = at(std::move(model), 0, 0, -low_mm);
         const Eigen::AlignedBox3d box = bounding_box(model, options.tolerance());
         spans = layer_spans(box.sizes().z(), options.profile.layer);
+        if (!thicknesses_mm.empty()) spans = by_turns(thicknesses_mm, box.sizes().z());
         const Cutter cutter(model, options.tolerance());
         for (std::size_t i = 0; i < spans.size(); ++i)
             layers.push_back(outline_layer(cutter, i, spans[i], box, options));
@@ -105,6 +109,18 @@ struct Supported {
         }
     }
     Supported(const Supported&) = delete;
+
+    static std::vector<LayerSpan> by_turns(const std::vector<double>& thicknesses_mm,
+                                           double height_mm) {
+        std::vector<LayerSpan> spans;
+        double top_mm = 0;
+        for (std::size_t i = 0; top_mm < height_mm - 0.05; ++i) {
+            const double bottom_mm = top_mm;
+            top_mm += thicknesses_mm[i % thicknesses_mm.size()];
+            spans.push_back({bottom_mm, top_mm});
+        }
+        return spans;
+    }
 
     bool in_part(std::size_t i, const Point2& point) const { return parts[i].winding(point) > 0; }
     bool in_support(std::size_t i, const Point2& point) const {
@@ -256,6 +272,19 @@ TEST_CASE("support_tree 1, 3: gaps are kept, and branches lean by no more than t
             check_gaps_and_standing(s, 0.2 * std::tan(40 * pi / 180) + round_off_mm);
             CHECK(s.diagnostics.empty());
         }
+    }
+}
+
+TEST_CASE(
+    "support_tree 3: over layers of unequal thickness no branch that can reach the bed is taken "
+    "back") {
+    for (const Model& model : {funnel(65), shelf(), table()}) {
+        Options options = tree();
+        options.profile.support.interface_layers = 0;
+        options.profile.support.on_bed_only = true;
+        const Supported s(model, options, {0.2, 0.05, 0.3, 0.1});
+        check_gaps_and_standing(s, 0.3 * std::tan(40 * pi / 180) + round_off_mm);
+        CHECK(s.diagnostics.empty());
     }
 }
 
