@@ -68,14 +68,22 @@ public:
     }
 
 private:
+    // Through points that run to and fro along a line goes a circle too, nearly all of it far from them.
+    bool is_as_long(const Point2& start, const Segment& segment, double line_mm) const {
+        constexpr double longest_share = 1.1;
+        return length_mm(start, segment) <= longest_share * line_mm + allowed_mm_;
+    }
+
     bool add_plain(const std::vector<Station>& edge) {
         const Station &first = edge.front(), &last = edge.back();
         const Point2 start = first.point.centre, end = last.point.centre;
         const Segment arc = arc_through(start, edge[edge.size() / 2].point.centre, end);
         for (const Segment& segment : {Segment{end, 0}, arc}) {
-            const bool fits = std::all_of(edge.begin(), edge.end(), [&](const Station& s) {
-                return distance_mm(start, segment, s.point.centre) <= join_share * allowed_mm_ / 4;
-            });
+            const bool fits = is_as_long(start, segment, last.at_mm - first.at_mm) &&
+                              std::all_of(edge.begin(), edge.end(), [&](const Station& s) {
+                                  return distance_mm(start, segment, s.point.centre) <=
+                                         join_share * allowed_mm_ / 4;
+                              });
             if (!fits) continue;
             add_curve();
             elements_.push_back({start, segment, first.at_mm, last.at_mm});
@@ -142,7 +150,7 @@ private:
             const auto is_near = [&](const Point2& point) {
                 return distance_mm(a.start, segment, point) <= join_share * allowed_mm_;
             };
-            bool fits = true;
+            bool fits = is_as_long(a.start, segment, b.to_mm - a.from_mm);
             for (std::size_t i = first; i <= last && fits; ++i)
                 fits = is_near(elements_[i].start) &&
                        is_near(point_at(elements_[i].start, elements_[i].segment, 0.25)) &&

@@ -1,6 +1,7 @@
 // A stretch of a region's middle line as few lines and arcs, and the width along it.
 //
-// Contract: no point of the middle line is farther than `allowed_mm` from the path. Widths are those of the discs,
+// Contract: no point of the middle line is farther than `allowed_mm` from the path, and no part of the path is much longer
+// than what it stands for. Widths are those of the discs,
 // but no more than the greatest that is asked for.
 
 #pragma once

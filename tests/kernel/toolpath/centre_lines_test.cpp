@@ -6,6 +6,7 @@
 
 #include "kernel/toolpath/boundary.h"
 #include "kernel/toolpath/fills.h"
+#include "kernel/toolpath/middle_path.h"
 #include "kernel/toolpath/offset.h"
 
 using namespace lyr;
@@ -422,4 +423,27 @@ TEST_CASE("centre lines: regions in one call come out as each by itself") {
     REQUIRE(both.strands.size() == 2);
     CHECK(same_bits(both.strands[0].path, lines_in(one).strands[0].path));
     CHECK(same_bits(both.strands[1].path, lines_in(other).strands[0].path));
+}
+
+TEST_CASE("middle path: through points that run to and fro goes no circle of the size of a house") {
+    for (const double bend_mm : {0.0, 1e-6, 1e-5, -1e-5, 1e-4}) {
+        CAPTURE(bend_mm);
+        Stations stations(1);
+        const std::vector<Point2> points{{0, 0}, {0.4, 0}, {1, bend_mm}, {0.8, 2 * bend_mm}};
+        double at_mm = 0;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            if (i > 0) at_mm += (points[i] - points[i - 1]).norm();
+            const Vector2 tangent = i + 1 < points.size() ? Vector2(points[i + 1] - points[i])
+                                                          : Vector2(points[i] - points[i - 1]);
+            MedialPoint point{};
+            point.centre = points[i];
+            point.tangent = tangent.normalized();
+            point.radius_mm = 0.2 + 0.05 * static_cast<double>(i);
+            stations[0].push_back({point, at_mm, at_mm});
+        }
+        const Strand strand = strand_along(stations, false, {0.8, 0.02}, allowed_mm);
+        CHECK(length_mm(strand.path) < 1.2 * at_mm);
+        for (const Segment& segment : std::get<Path>(strand.path).segments)
+            CHECK(segment.end.norm() < 1.1);
+    }
 }
