@@ -429,7 +429,7 @@ TEST_CASE("middle path: through points that run to and fro goes no circle of the
     for (const double bend_mm : {0.0, 1e-6, 1e-5, -1e-5, 1e-4}) {
         CAPTURE(bend_mm);
         Stations stations(1);
-        const std::vector<Point2> points{{0, 0}, {0.4, 0}, {1, bend_mm}, {0.8, 2 * bend_mm}};
+        const std::vector<Point2> points{{0, 0}, {1, bend_mm}, {0.8, 2 * bend_mm}};
         double at_mm = 0;
         for (std::size_t i = 0; i < points.size(); ++i) {
             if (i > 0) at_mm += (points[i] - points[i - 1]).norm();
