@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "kernel/contour/turned_round.h"
 #include "kernel/toolpath/layer_order.h"
 #include "slicer/styles.h"
 #include "slicer/support_order.h"
@@ -25,7 +26,7 @@ Strand reversed(Strand strand) {
     auto* path = std::get_if<Path>(&strand.path);
     if (!path) return strand;
     std::reverse(strand.widths_mm.begin(), strand.widths_mm.end());
-    strand.path = slicer::reversed(*path);
+    strand.path = turned_round(*path);
     return strand;
 }
 

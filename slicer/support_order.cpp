@@ -2,22 +2,11 @@
 
 #include <optional>
 
+#include "kernel/contour/turned_round.h"
 #include "kernel/region/curve.h"
 
 namespace lyr::slicer {
 namespace {
-
-// The same boundary with the material on its other side.
-Contour turned_round(const Contour& contour) {
-    if (const auto* circle = std::get_if<FullCircle>(&contour))
-        return FullCircle{circle->centre, circle->radius_mm, !circle->counter_clockwise};
-    const Path& path = std::get<Path>(contour);
-    Path back{path.start, {}};
-    for (std::size_t i = path.segments.size(); i-- > 0;)
-        back.segments.push_back(
-            {i > 0 ? path.segments[i - 1].end : path.start, -path.segments[i].sagitta_mm});
-    return back;
-}
 
 // Beside the part, as far as the head may have to go.
 std::vector<Contour> outside_of(Region part, std::span<const OpenPiece> pieces) {

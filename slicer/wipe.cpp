@@ -4,20 +4,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "kernel/contour/turned_round.h"
+
 namespace lyr::slicer {
 namespace {
 
 constexpr double half_turn_rad = std::numbers::pi;
-
-double length_of_open_mm(const Path& path) {
-    double sum_mm = 0;
-    Point2 from = path.start;
-    for (const Segment& segment : path.segments) {
-        sum_mm += length_mm(from, segment);
-        from = segment.end;
-    }
-    return sum_mm;
-}
 
 Segment first_part(const Point2& from, const Segment& segment, double share) {
     const Point2 end = point_at(from, segment, share);
@@ -59,20 +51,11 @@ Path turn_around(const FullCircle& circle, const Point2& start, double most_mm) 
 
 }  // namespace
 
-Path reversed(const Path& path) {
-    if (path.segments.empty()) return path;
-    Path back{path.segments.back().end, {}};
-    for (std::size_t i = path.segments.size(); i-- > 0;)
-        back.segments.push_back(
-            {i > 0 ? path.segments[i - 1].end : path.start, -path.segments[i].sagitta_mm});
-    return back;
-}
-
 Path wipe_along(const Strand& printed, const Point2& start, double most_mm) {
     if (const auto* circle = std::get_if<FullCircle>(&printed.path))
         return turn_around(*circle, start, most_mm);
     const Path& path = std::get<Path>(printed.path);
-    return beginning(is_closed(printed) ? path : reversed(path), most_mm);
+    return beginning(is_closed(printed) ? path : turned_round(path), most_mm);
 }
 
 Path wipe_along(const HatchRun& printed, double most_mm) {
@@ -94,7 +77,7 @@ Path wipe_along(const HatchRun& printed, double most_mm) {
 
 double depth_before_wipe_mm(const Path& wipe, const profile::Profile& profile) {
     const profile::Travel& travel = profile.travel;
-    const double wiping_s = length_of_open_mm(wipe) / profile.speed.travel_mm_s;
+    const double wiping_s = length_mm(Contour(wipe)) / profile.speed.travel_mm_s;
     const double left_mm = travel.retract_length_mm - wiping_s * travel.retract_speed_mm_s;
     return std::max(left_mm, travel.retract_before_wipe * travel.retract_length_mm);
 }

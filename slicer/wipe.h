@@ -25,9 +25,6 @@ Path wipe_along(const HatchRun& printed, double length_mm);
 // To which depth the filament is drawn back before the wipe; 0: not at all.
 double depth_before_wipe_mm(const Path& wipe, const profile::Profile& profile);
 
-// From the end to the start.
-Path reversed(const Path& path);
-
 // Moved by `shift`. Arcs of more than half a turn come in two.
 std::vector<format::WipePiece> wipe_pieces(const Path& wipe,
                                            const Vector2& shift = Vector2::Zero());

@@ -10,6 +10,7 @@
 #include <optional>
 #include <tuple>
 
+#include "kernel/contour/turned_round.h"
 #include "kernel/geometry/tolerance.h"
 #include "kernel/region/box_tree.h"
 #include "kernel/region/stitch.h"
@@ -81,19 +82,6 @@ Contour turned(const Contour& contour, double angle_rad) {
     path.start = rotation * path.start;
     for (Segment& segment : path.segments) segment.end = rotation * segment.end;
     return path;
-}
-
-Contour reversed(const Contour& contour) {
-    if (const auto* circle = std::get_if<FullCircle>(&contour)) {
-        return FullCircle{circle->centre, circle->radius_mm, !circle->counter_clockwise};
-    }
-    const Path& path = std::get<Path>(contour);
-    Path result{path.start, {}};
-    for (std::size_t i = path.segments.size(); i-- > 0;) {
-        const Point2& end = i == 0 ? path.start : path.segments[i - 1].end;
-        result.segments.push_back({end, -path.segments[i].sagitta_mm});
-    }
-    return result;
 }
 
 // A total order of contours by their numbers.
@@ -172,7 +160,7 @@ RegionResult contours_of(std::span<const Input> inputs, std::span<const Input> s
     result.slivers = found.slivers;
     for (const region::WholeInput& whole : found.whole) {
         const Contour& contour = *inputs[whole.input].contour;
-        result.contours.push_back(whole.reversed ? reversed(contour) : contour);
+        result.contours.push_back(whole.reversed ? turned_round(contour) : contour);
         result.changed = result.changed || whole.reversed;
     }
     for (const Contour& contour : found.built) {

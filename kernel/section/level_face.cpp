@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "kernel/contour/fit.h"
+#include "kernel/contour/turned_round.h"
 #include "kernel/section/leaning.h"
 
 namespace lyr {
@@ -29,14 +30,6 @@ void append_edge(const Model& model, const Coedge& coedge, const Tolerance& tole
     fit_arcs(curve, 0.5, 1, middle, end, tolerance.fit_mm(), path.segments);
 }
 
-Path reversed(const Path& path) {
-    Path back{path.start, {}};
-    for (std::size_t i = path.segments.size(); i-- > 0;)
-        back.segments.push_back(
-            {i > 0 ? path.segments[i - 1].end : path.start, -path.segments[i].sagitta_mm});
-    return back;
-}
-
 }  // namespace
 
 std::optional<LevelFace> level_face(const Model& model, FaceId id, const Tolerance& tolerance) {
@@ -54,7 +47,7 @@ std::optional<LevelFace> level_face(const Model& model, FaceId id, const Toleran
         for (std::uint32_t c = 0; c < loop.coedge_count; ++c)
             append_edge(model, coedges[c], tolerance, path);
         path.segments.back().end = path.start;
-        if (result.looks_down) path = reversed(path);
+        if (result.looks_down) path = std::get<Path>(turned_round(Contour(path)));
         if (auto contour = simplified(std::move(path), tolerance.trace_mm()))
             result.region.push_back(std::move(*contour));
     }

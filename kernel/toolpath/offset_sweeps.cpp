@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "kernel/contour/turned_round.h"
 #include "kernel/geometry/tolerance.h"
 #include "kernel/toolpath/boundary.h"
 #include "kernel/toolpath/offset_curve.h"
@@ -16,12 +17,7 @@ Vector2 right_of(const Vector2& direction) {
 // Around a path that winds clockwise, the other way.
 Path counter_clockwise(Path path) {
     if (area_mm2(Contour(path)) > 0) return path;
-    Path reversed{path.start, {}};
-    for (std::size_t i = path.segments.size(); i-- > 0;) {
-        const Point2& end = i == 0 ? path.start : path.segments[i - 1].end;
-        reversed.segments.push_back({end, -path.segments[i].sagitta_mm});
-    }
-    return reversed;
+    return std::get<Path>(turned_round(Contour(std::move(path))));
 }
 
 class Sweeps {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "kernel/contour/turned_round.h"
 #include "kernel/toolpath/boundary.h"
 #include "kernel/toolpath/bridges.h"
 #include "kernel/toolpath/islands.h"
@@ -19,9 +20,8 @@ using Contours = std::vector<Contour>;
 constexpr double least_held = 0.98;
 
 Contour there_and_back(Path path) {
-    for (std::size_t i = path.segments.size(); i-- > 0;)
-        path.segments.push_back(
-            {i > 0 ? path.segments[i - 1].end : path.start, -path.segments[i].sagitta_mm});
+    const Path back = turned_round(path);
+    path.segments.insert(path.segments.end(), back.segments.begin(), back.segments.end());
     return path;
 }
 

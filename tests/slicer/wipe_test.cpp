@@ -10,6 +10,7 @@
 
 #include "format/arc.h"
 #include "format/reader.h"
+#include "kernel/contour/turned_round.h"
 #include "slicer/slicer.h"
 
 using namespace lyr;
@@ -81,7 +82,7 @@ TEST_CASE("wipe 1, 2: back along what has ends, on along the beginning of what i
                 check_along(wipe_along(Strand{closed, 0.4}, {}, most_mm), closed, closed.start,
                             std::min(most_mm, open_mm + std::hypot(12, 3)));
             }
-            const Path back = reversed(open);
+            const Path back = turned_round(open);
             check_along(wipe_along(Strand{back, 0.4}, {}, 3), open, open.start, 3);
         }
 }
