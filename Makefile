@@ -30,7 +30,7 @@ demo: all
 	$(BUILD)/lyrview demo/gearbox_base.lyr --layer 36 --no-travel -o demo/layer-36.svg
 	@echo "The picture: demo/layer-36.svg"
 
-test: all board
+test: all
 	cmake --build $(BUILD) -j $(JOBS)
 	cd $(BUILD) && $(CTEST)
 
@@ -39,7 +39,6 @@ sanitize: setup
 	cmake --build build-sanitize -j $(JOBS)
 	cd build-sanitize && $(CTEST)
 
-# The link graph's proof: without the kernel there is neither Eigen nor a model.
 board: setup
 	cmake -S . -B build-board -DCMAKE_BUILD_TYPE=Release -DLYR_KERNEL=OFF -DLYR_TESTS=OFF \
 	  -DCMAKE_DISABLE_FIND_PACKAGE_Eigen3=ON

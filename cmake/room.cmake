@@ -9,8 +9,13 @@ if(LYR_SANITIZE)
   target_link_options(lyr_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
+# Tests are built to be built quickly: most of their time is the compiler's.
+add_library(lyr_test_flags INTERFACE)
+target_compile_options(lyr_test_flags INTERFACE -Og)
+
 # lyr_precompile(<name> <library>...): headers that many sources read, read once. A folder whose CMakeLists.txt sets
-# LYR_HEADERS to the name has them; no source may rely on it, and -DLYR_PRECOMPILE=OFF builds without.
+# LYR_HEADERS to the name has them; no source may rely on it, and -DLYR_PRECOMPILE=OFF builds without. Options that
+# change code have to be those of the sources.
 function(lyr_precompile name)
   if(LYR_PRECOMPILE)
     file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/${name}.cpp CONTENT "")
@@ -53,10 +58,34 @@ endfunction()
 function(lyr_test name)
   cmake_parse_arguments(TEST "" "" "SOURCES;LINK" ${ARGN})
   add_executable(${name} ${TEST_SOURCES})
-  target_link_libraries(${name} PRIVATE ${TEST_LINK} lyr_flags lyr_test_main)
+  target_link_libraries(${name} PRIVATE ${TEST_LINK} lyr_flags lyr_test_flags lyr_test_main)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(${name} PRIVATE
     LYR_FIXTURES="${PROJECT_SOURCE_DIR}/fixtures" LYR_BUILD="${PROJECT_BINARY_DIR}")
   lyr_use_headers(${name})
   add_test(NAME ${name} COMMAND ${name})
+endfunction()
+
+# lyr_stands_alone(<target>...): what a printer's board runs has neither Eigen nor a model, whatever is built beside it.
+# All that a source can include comes with what it links, so the links are looked at.
+function(lyr_stands_alone)
+  set(waiting ${ARGN})
+  set(seen "")
+  while(waiting)
+    list(POP_FRONT waiting name)
+    if(name IN_LIST seen OR NOT TARGET ${name})
+      continue()
+    endif()
+    list(APPEND seen ${name})
+    get_target_property(source ${name} SOURCE_DIR)
+    if(name MATCHES "Eigen" OR source MATCHES "^${PROJECT_SOURCE_DIR}/(kernel|parser|profile|slicer)(/|$)")
+      message(FATAL_ERROR "${ARGN}: no part of a board's programs may link ${name}")
+    endif()
+    foreach(property LINK_LIBRARIES INTERFACE_LINK_LIBRARIES)
+      get_target_property(linked ${name} ${property})
+      if(linked)
+        list(APPEND waiting ${linked})
+      endif()
+    endforeach()
+  endwhile()
 endfunction()
