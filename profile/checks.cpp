@@ -55,6 +55,8 @@ constexpr Contradiction contradictions[] = {
      [](const Profile& p) { return p.infill.width_mm < p.layer.first_height_mm; }},
     {"perimeters.min_width", above, "perimeters.max_width",
      [](const Profile& p) { return p.perimeters.min_width_mm > p.perimeters.max_width_mm; }},
+    {"perimeters.min_gap", above, "perimeters.max_width",
+     [](const Profile& p) { return p.perimeters.min_gap_mm > p.perimeters.max_width_mm; }},
     {"fan.min", above, "fan.max", [](const Profile& p) { return p.fan.min > p.fan.max; }},
     {"fan.min_layer_time", above, "fan.ramp_time",
      [](const Profile& p) { return p.fan.min_layer_time_s > p.fan.ramp_time_s; }},

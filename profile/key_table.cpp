@@ -97,9 +97,13 @@ void add_perimeters(std::vector<Key>& keys) {
               "One line of varying width where two walls do not fit")
         .flag("gap_fill", &Perimeters::gap_fill, "Fill gaps between walls that no line fits into")
         .number("min_width", &Perimeters::min_width_mm, mm, width_mm,
-                "Thinnest line of thin walls and gap fill")
+                "Thinnest line that is printed for a thin wall")
         .otherwise("1/2 of nozzle.diameter",
                    [](Profile& p) { p.perimeters.min_width_mm = times(p.nozzle.diameter_mm, 0.5); })
+        .number("min_gap", &Perimeters::min_gap_mm, mm, width_mm,
+                "Narrowest gap between walls that is filled")
+        .otherwise("1/4 of nozzle.diameter",
+                   [](Profile& p) { p.perimeters.min_gap_mm = times(p.nozzle.diameter_mm, 0.25); })
         .number("max_width", &Perimeters::max_width_mm, mm, width_mm,
                 "Widest line of thin walls and gap fill")
         .otherwise("2 x nozzle.diameter",

@@ -70,7 +70,8 @@ struct Perimeters {
     double overlap = 1;
     bool thin_walls = true;
     bool gap_fill = true;
-    double min_width_mm = 0.2;  // of thin walls and gap fill
+    double min_width_mm = 0.2;  // of thin walls
+    double min_gap_mm = 0.1;    // between walls, to be filled
     double max_width_mm = 0.8;
     Seam seam = Seam::aligned;
     Corner corner = Corner::round;

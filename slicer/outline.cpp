@@ -50,6 +50,7 @@ Walls walls_of(Region outline, const LayerSpan& span, const Options& options) {
                            .height_mm = span.height_mm(),
                            .overlap = perimeters.overlap,
                            .min_width_mm = perimeters.min_width_mm,
+                           .min_gap_mm = perimeters.min_gap_mm,
                            .thin_walls = perimeters.thin_walls,
                            .gap_fill = perimeters.gap_fill,
                            .corner = perimeters.corner == profile::Corner::mitre ? Corner::mitre

@@ -56,6 +56,38 @@ Status check_size(const Eigen::AlignedBox3d& box, const profile::Layer& layer) {
     return Done{};
 }
 
+bool is_empty(const Walls& walls) {
+    return walls.strands.empty() && walls.inside.empty() && walls.thin.empty();
+}
+
+// What is so thin that no line is printed for it: nothing, or something at least.
+Status check_thin_parts(std::span<const OutlinedLayer> layers, std::span<const LayerSpan> spans,
+                        const profile::Perimeters& perimeters, Diagnostics& diagnostics) {
+    // Less than a square of this edge in a layer is the tip of a corner.
+    constexpr double tip_mm = 0.25;
+    std::size_t count = 0, most = 0;
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        if (layers[i].walls.too_thin_mm2 <= tip_mm * tip_mm) continue;
+        ++count;
+        if (layers[i].walls.too_thin_mm2 > layers[most].walls.too_thin_mm2) most = i;
+    }
+    const std::string limit = shortest(perimeters.min_width_mm) + " mm (perimeters.min_width)";
+    if (std::all_of(layers.begin(), layers.end(), [](const auto& l) { return is_empty(l.walls); }))
+        return Diagnostic{Severity::error,
+                          ExitStatus::geometry,
+                          "nothing to print: the part is nowhere thicker than " + limit,
+                          {}};
+    if (count == 0) return Done{};
+    char area[64];
+    std::snprintf(area, sizeof area, "; most here, %.3g mm2", layers[most].walls.too_thin_mm2);
+    diagnostics.push_back(
+        {Severity::warning,
+         ExitStatus::geometry,
+         "parts thinner than " + limit + " are left out in " + counted(count, "layer") + area,
+         {.layer = static_cast<int>(most + 1), .z_mm = spans[most].middle_mm()}});
+    return Done{};
+}
+
 void warn_of_no_wipe(const profile::Travel& travel, Diagnostics& diagnostics) {
     if (!(travel.wipe_mm > 0) || travel.retract_length_mm > 0) return;
     diagnostics.push_back({Severity::warning,
@@ -227,6 +259,9 @@ Result<Summary> print(Model model, const std::string& source_name, const std::st
     prepare(cutter, placed.faces.size(), spans, thread_count(options));
     const auto layers = outlined(cutter, spans, options, progress, summary, diagnostics);
     if (!layers) return layers.error();
+    if (Status checked = check_thin_parts(*layers, spans, options.profile.perimeters, diagnostics);
+        !checked)
+        return checked.error();
     SupportPlan support(*layers, spans, raft_layers(options.profile));
     if (options.profile.support.kind != profile::SupportKind::none) {
         support.find_overhangs(placed, cutter, *blocked, options);

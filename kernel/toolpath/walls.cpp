@@ -174,12 +174,16 @@ private:
         const std::vector<Contour> rest = covered.empty()
                                               ? std::vector<Contour>(outer.begin(), outer.end())
                                               : operated(outer, covered, Operation::subtract);
-        const double half_mm = request_.min_width_mm / 2;
+        const double least_mm = depth == 0 ? request_.min_width_mm : request_.min_gap_mm;
+        // What is as wide as that but for what is allowed would vanish.
+        const double half_mm = std::max(least_mm / 4, least_mm / 2 - request_.allowed_mm);
         const std::vector<Contour> fit = offset_by(BoundedRegion(rest), -half_mm, Corner::round);
         const std::vector<Contour> opened = offset_by(BoundedRegion(fit), half_mm, Corner::mitre);
         const std::vector<Contour> narrow =
             opened.empty() ? opened : operated(opened, rest, Operation::intersect);
-        walls_.left_out_mm2 += area_mm2(rest) - area_mm2(narrow);
+        const double left_out_mm2 = area_mm2(rest) - area_mm2(narrow);
+        walls_.left_out_mm2 += left_out_mm2;
+        if (depth == 0) walls_.too_thin_mm2 += left_out_mm2;
         auto& list = depth == 0 ? walls_.thin : walls_.gaps;
         list.insert(list.end(), narrow.begin(), narrow.end());
     }

@@ -225,3 +225,17 @@ TEST_CASE("slicer: skirt and brim go around the part on the first layer, and com
         CHECK(last == 0);
     }
 }
+
+TEST_CASE(
+    "slicer: of a part that is thinner than any line nothing is printed, and that is an error") {
+    const std::string lyr = scratch("thin.lyr");
+    std::filesystem::remove(lyr);
+    Options options;
+    options.profile.perimeters.min_width_mm = options.profile.perimeters.max_width_mm = 19.9;
+    options.profile.perimeters.width_mm = 19.9;
+    options.profile.perimeters.min_gap_mm = 19.9;
+    const auto summary = print_part("cube_hole.step", lyr, options);
+    REQUIRE(!summary);
+    CHECK(summary.error().message.find("nothing to print") != std::string::npos);
+    CHECK(!std::filesystem::exists(lyr));
+}

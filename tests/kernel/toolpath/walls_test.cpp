@@ -78,6 +78,26 @@ TEST_CASE(
     }
 }
 
+TEST_CASE(
+    "walls 2: a rib is left out below the least width, and not at it, and gaps have their own") {
+    const auto made_of = [](double rib_mm) {
+        return walls(Contours{rectangle(0, 0, 30, rib_mm)}, request(2));
+    };
+    for (const double rib_mm : {0.2, 0.21}) {
+        CHECK(total_area(made_of(rib_mm).thin) == doctest::Approx(30 * rib_mm).epsilon(0.002));
+        CHECK(made_of(rib_mm).too_thin_mm2 < 0.02);
+    }
+    CHECK(made_of(0.19).thin.empty());
+    CHECK(made_of(0.19).too_thin_mm2 == doctest::Approx(30 * 0.19).epsilon(0.01));
+    // Between the walls of a rib of 1 mm there is less than 0.2 mm.
+    const double gap_mm = 1 - width_mm - spacing_mm;
+    CHECK(total_area(made_of(1).gaps) == doctest::Approx(29 * gap_mm).epsilon(0.02));
+    const Walls close = made_of(width_mm + spacing_mm + 0.09);
+    CHECK(close.gaps.empty());
+    CHECK(close.left_out_mm2 > 1);
+    CHECK(close.too_thin_mm2 < 0.02);
+}
+
 TEST_CASE("walls 2: a thin rib on a plate leaves the plate's walls as they are") {
     const Path shape{{0, 0},
                      {{{30, 0}},
