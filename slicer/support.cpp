@@ -15,8 +15,8 @@
 namespace lyr::slicer {
 namespace {
 
-// How far support reaches out beside what it holds: enough for a pillar of two walls and a line under a point.
-constexpr double margin_mm = 1;
+// How far support reaches out beside what it holds at least: enough for a pillar of two walls and a line under a point.
+constexpr double least_margin_mm = 1;
 
 // PrusaSlicer's limit for bridges that need no support.
 constexpr double longest_bridge_mm = 10;
@@ -102,6 +102,15 @@ void append(Fill fill, format::Role role, std::vector<Piece>& pieces) {
     for (Strand& strand : fill.strands) pieces.push_back({role, std::move(strand)});
 }
 
+std::string some_of(std::span<const std::string> names) {
+    constexpr std::size_t most = 8;
+    std::string list;
+    for (const std::string& name : names.first(std::min(most, names.size())))
+        list += (list.empty() ? "" : ", ") + in_quotes(name);
+    if (names.size() > most) list += " and " + std::to_string(names.size() - most) + " more";
+    return list;
+}
+
 }  // namespace
 
 Result<std::vector<FaceId>> blocked_faces(const Model& model, const profile::Support& support) {
@@ -117,10 +126,14 @@ Result<std::vector<FaceId>> blocked_faces(const Model& model, const profile::Sup
         }
         if (faces.size() > before) continue;
         std::vector<std::string> names;
-        for (const auto& [source, known] : model.face_names) names.push_back(known);
+        for (const auto& [source, known] : model.face_names)
+            if (std::find(names.begin(), names.end(), known) == names.end()) names.push_back(known);
         const std::string nearest = nearest_name(name, names);
         std::string message = "support.blockers: no face is named " + in_quotes(name);
-        if (!nearest.empty()) message += "; did you mean " + in_quotes(nearest) + '?';
+        if (!nearest.empty())
+            message += "; did you mean " + in_quotes(nearest) + '?';
+        else if (!names.empty())
+            message += "; the file's faces are named " + some_of(names);
         if (names.empty())
             message +=
                 "; the file's faces have no names, but \"#123\" is the face of instance #123";
@@ -162,13 +175,14 @@ void SupportPlan::find_overhangs(const Model& model, const Cutter& cutter,
             const double ledge = ledge_mm(span_of(i), options);
             const bool flat =
                 may_be_flat(layers_[i].seen, layers_[i - 1].seen, ledge, skin_width_mm(options));
-            return overhang_of(layers_[i].outline, layers_[i - 1].outline, edges[i],
-                               edges[i - 1].leaning, flat,
-                               {.ledge_mm = ledge,
-                                .margin_mm = margin_mm,
-                                .longest_bridge_mm = longest_bridge_mm,
-                                .width_mm = skin_width_mm(options),
-                                .allowed_mm = options.tolerance().unite_mm()});
+            return overhang_of(
+                layers_[i].outline, layers_[i - 1].outline, edges[i], edges[i - 1].leaning, flat,
+                {.ledge_mm = ledge,
+                 .margin_mm = std::max(least_margin_mm,
+                                       options.profile.support.gap_xy_mm + skin_width_mm(options)),
+                 .longest_bridge_mm = longest_bridge_mm,
+                 .width_mm = skin_width_mm(options),
+                 .allowed_mm = options.tolerance().unite_mm()});
         },
         [&](std::size_t i, Overhang found) {
             overhangs_[i] = std::move(found);
@@ -201,8 +215,10 @@ void SupportPlan::find_areas(const Options& options, Diagnostics& diagnostics) {
     };
     if (!areas_.out_of_reach.empty())
         warn(*std::min_element(areas_.out_of_reach.begin(), areas_.out_of_reach.end()),
-             counted(areas_.out_of_reach.size(), "layer") +
-                 ", this one first, have overhangs with no room for support under them");
+             areas_.out_of_reach.size() == 1
+                 ? "the layer has overhangs with no room for support under them"
+                 : counted(areas_.out_of_reach.size(), "layer") +
+                       ", this one first, have overhangs with no room for support under them");
     for (const std::size_t layer : areas_.unresolved)
         warn(layer, "the support of the layer could not be worked out");
     for (std::size_t i = 0; i < overhangs_.size(); ++i)

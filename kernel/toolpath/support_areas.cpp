@@ -191,7 +191,7 @@ LayerRoom room_of(std::span<const SupportLevel> levels, std::size_t layer,
     parts.push_back(beside);
     result.clear = take(united(parts, request.allowed_mm));
     if (level.overhang.empty()) return result;
-    const Contours reach = request.gap_xy_mm < request.width_mm ? grown(request.width_mm) : beside;
+    const Contours reach = grown(request.gap_xy_mm + request.width_mm);
     result.contact =
         take(combined(level.overhang, reach, Operation::intersect, request.allowed_mm));
     return result;

@@ -347,7 +347,7 @@ TEST_CASE("support 1: under a lying cylinder it is as wide as the arc beyond the
         for (const Contour& contour : s.plan.area(i))
             widest_mm = std::max(widest_mm, lyr::region::box_of(contour).max().x());
     // By how far support reaches out beside the part, within what the surface of the limit leans out in a layer.
-    const double reach_mm = s.options.profile.skin.width_mm;
+    const double reach_mm = s.options.profile.support.gap_xy_mm + s.options.profile.skin.width_mm;
     CHECK(std::abs(widest_mm - edge_mm - reach_mm) < 0.2 * std::tan(50 * pi / 180));
 }
 
@@ -413,6 +413,24 @@ TEST_CASE("support 4: an overhang with no room under it is warned of") {
     REQUIRE(s.diagnostics.size() == 1);
     CHECK(s.diagnostics[0].message.find("no room for support") != std::string::npos);
     CHECK(s.diagnostics[0].where.layer > 0);
+}
+
+TEST_CASE("support 2: the uppermost layers of a slope have room for a line under them") {
+    for (const double degrees : {35.0, 45.0, 60.0})
+        for (const double gap_mm : {0.2, 0.4, 0.8, 2.0}) {
+            CAPTURE(degrees);
+            CAPTURE(gap_mm);
+            Options options = grid();
+            options.profile.support.angle_deg = 30;
+            options.profile.support.gap_xy_mm = gap_mm;
+            const Supported s(funnel(degrees), options);
+            CHECK(s.diagnostics.empty());
+            std::size_t highest = 0;
+            for (std::size_t i = 0; i < s.spans.size(); ++i)
+                if (!s.plan.area(i).empty()) highest = i;
+            // Two layers below the top one, for the gap.
+            CHECK(highest + 3 == s.spans.size());
+        }
 }
 
 TEST_CASE("support: between its parts the head goes around the part") {
