@@ -67,7 +67,8 @@ Surveyed survey(const Model& model, double part_height_mm, const FlatnessLimits&
 std::string names_of(const LevelFaces& level) {
     const std::size_t count = level.sources.size();
     if (count == 0) return "the part's top";
-    std::string text = count == 1 ? "the level face" : "the level faces";
+    if (count == 1) return "the level face";
+    std::string text = "the level faces";
     for (std::size_t i = 0; i < std::min(count, named_faces); ++i)
         text += (i == 0 ? " #" : ", #") + std::to_string(level.sources[i]);
     if (count > named_faces) text += " and " + std::to_string(count - named_faces) + " more";
@@ -89,7 +90,8 @@ void warn_of_missed(std::span<const LevelFaces> levels, std::span<const LayerSpa
         char text[160];
         std::snprintf(text, sizeof text,
                       " at %.6g mm: no layer can end there, the next one ends at %.6g mm", z, end);
-        const SourceId source = level.sources.empty() ? 0 : level.sources.front();
+        // Several are named in the text.
+        const SourceId source = level.sources.size() == 1 ? level.sources.front() : 0;
         diagnostics.push_back({Severity::warning,
                                ExitStatus::geometry,
                                names_of(level) + text,

@@ -16,8 +16,6 @@ constexpr double largest_plate_mm = 10'000;
 constexpr double pitch_step_mm = 0.001;
 // The nozzle passes over finished copies so high above them: over what curls up or hangs from it.
 constexpr double lift_mm = 2;
-// What fits but for the rounding of a box fits.
-constexpr double slack_mm = 1e-6;
 
 using Sizes = Eigen::Array2d;
 
@@ -26,7 +24,7 @@ struct Grid {
 };
 
 double rounded_up_mm(double length_mm) {
-    return std::ceil(length_mm / pitch_step_mm - slack_mm / pitch_step_mm) * pitch_step_mm;
+    return std::ceil(length_mm / pitch_step_mm - plate_slack_mm / pitch_step_mm) * pitch_step_mm;
 }
 
 class Layout {
@@ -67,7 +65,7 @@ private:
     // How many fit beside and behind each other.
     Grid most() const {
         const auto along = [&](Eigen::Index axis) -> std::size_t {
-            const double room_mm = end_mm(axis) - corner_[axis] - size_[axis] + slack_mm;
+            const double room_mm = end_mm(axis) - corner_[axis] - size_[axis] + plate_slack_mm;
             if (!(room_mm >= 0)) return 0;
             const double more = std::min<double>(plate_.copies, std::floor(room_mm / pitch_[axis]));
             return 1 + static_cast<std::size_t>(more);
@@ -88,7 +86,7 @@ private:
              ++columns) {
             const Grid grid{columns, (plate_.copies + columns - 1) / columns};
             if (grid.rows > room.rows) continue;
-            if (!best || longer_side_mm(grid) < longer_side_mm(*best) - slack_mm) best = grid;
+            if (!best || longer_side_mm(grid) < longer_side_mm(*best) - plate_slack_mm) best = grid;
         }
         return best;
     }

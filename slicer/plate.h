@@ -19,6 +19,9 @@
 
 namespace lyr::slicer {
 
+// What fits on a plate but for the rounding of a box fits.
+inline constexpr double plate_slack_mm = 1e-6;
+
 struct PlateLayout {
     std::size_t columns = 1, rows = 1;
     double gap_mm = 0;                   // between the boxes

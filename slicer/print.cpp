@@ -101,8 +101,8 @@ void warn_of_no_wipe(const profile::Travel& travel, Diagnostics& diagnostics) {
 Status check_plate(const Eigen::AlignedBox3d& box, const profile::Plate& plate) {
     const auto& [width_mm, depth_mm] = plate.size_mm;
     if (width_mm == 0 && depth_mm == 0) return Done{};
-    if (box.min().x() >= 0 && box.min().y() >= 0 && box.max().x() <= width_mm &&
-        box.max().y() <= depth_mm)
+    if (box.min().x() >= -plate_slack_mm && box.min().y() >= -plate_slack_mm &&
+        box.max().x() <= width_mm + plate_slack_mm && box.max().y() <= depth_mm + plate_slack_mm)
         return Done{};
     char text[160];
     std::snprintf(

@@ -16,8 +16,11 @@ std::string uniform_text(const profile::Layer& layer) {
 
 std::string adaptive_text(const AdaptiveFigures& figures) {
     char text[80];
-    std::snprintf(text, sizeof text, " in layers of %.3g to %.3g mm", figures.thinnest_mm,
-                  figures.thickest_mm);
+    if (figures.thinnest_mm == figures.thickest_mm)
+        std::snprintf(text, sizeof text, " at %.3g mm a layer", figures.thickest_mm);
+    else
+        std::snprintf(text, sizeof text, " in layers of %.3g to %.3g mm", figures.thinnest_mm,
+                      figures.thickest_mm);
     return text;
 }
 
@@ -43,7 +46,9 @@ std::string size_text(const Summary& summary, const Options& options) {
     text += summary.adaptive ? adaptive_text(*summary.adaptive) : uniform_text(layer);
     std::snprintf(line, sizeof line, ", tolerance %g mm\n", options.tolerance().total_mm);
     text += line;
-    return summary.adaptive ? text + steps_text(*summary.adaptive, layer.cusp_mm) : text;
+    // Of a single layer there is nothing to compare.
+    if (!summary.adaptive || summary.layers == 1) return text;
+    return text + steps_text(*summary.adaptive, layer.cusp_mm);
 }
 
 }  // namespace lyr::slicer
