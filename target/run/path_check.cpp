@@ -28,6 +28,7 @@ struct Crossing {
     bool reversal;  // the axis passed the same middle the other way last
 
     double ahead(double at_mm) const { return sign * (at_mm - middle_mm); }
+    bool close(double at_mm) const { return std::abs(at_mm - middle_mm) <= slack_mm; }
 
     std::optional<double> on_line(double share) const {
         const double change = curve.to_mm[axis] - curve.from_mm[axis];
@@ -35,7 +36,7 @@ struct Crossing {
         return std::clamp((middle_mm - curve.from_mm[axis]) / change, share, 1.0);
     }
 
-    std::optional<double> on_arc(double share) const {
+    std::optional<double> on_arc(double share, double at_mm) const {
         const double center = axis == axis_x ? curve.center_x_mm : curve.center_y_mm;
         double reach = sign * (middle_mm - center) / curve.radius_mm;
         if (reach > 1 && (reach - 1) * curve.radius_mm <= slack_mm) reach = 1;
@@ -45,12 +46,15 @@ struct Crossing {
                              (axis == axis_y ? pi / 2 : 0) + (sign < 0 ? pi : 0);
         const double turned = curve.sweep_rad < 0 ? -angle : angle;
         const double half_width = std::acos(reach);
-        // An entry that rounding puts just behind the share is the one looked for.
-        const double turns = std::ceil((turned + half_width) / (2 * pi) - rounding_turns);
-        const double entry = 2 * pi * turns - half_width;
+        const double turns = (turned + half_width) / (2 * pi);
+        // On the way past the middle the entry nearby is the one looked for, though another axis, due a
+        // moment later by rounding, may have led the curve on to just behind it.
+        const bool passing = close(at_mm) && std::sin(turned) < 0;
+        const double whole = passing ? std::round(turns) : std::ceil(turns - rounding_turns);
+        const double entry = 2 * pi * whole - half_width;
         const double at = std::max(share, share + (entry - turned) / std::abs(curve.sweep_rad));
         if (at <= 1) return at;
-        if (reversal || ahead(curve.to_mm[axis]) < -slack_mm) return std::nullopt;
+        if (reversal || !close(curve.to_mm[axis])) return std::nullopt;
         return 1.0;
     }
 
@@ -59,7 +63,7 @@ struct Crossing {
         const double now_mm = ahead(at_mm);
         // Other axes, due a moment later by rounding, have led the curve on past the middle.
         if (now_mm > slack_mm) return share;
-        const auto found = curve.is_arc && axis <= axis_y ? on_arc(share) : on_line(share);
+        const auto found = curve.is_arc && axis <= axis_y ? on_arc(share, at_mm) : on_line(share);
         if (found || reversal || now_mm < -slack_mm) return found;
         return share;
     }

@@ -264,6 +264,39 @@ TEST_CASE("path check 1: a step that is almost due is measured where it is due")
     CHECK(swapped < 0.5 + 0.001);
 }
 
+TEST_CASE(
+    "path check 3: a step on an arc is not lost where another axis, of the same nanosecond, goes "
+    "first") {
+    // y is past its middle by `behind` steps where x passes its own, and both come in one write, x first.
+    for (const double behind : {0.0, 1e-8, 1e-7, 9e-7, 1.1e-6, 2e-5})
+        for (const double sign_x : {1.0, -1.0})
+            for (const double sign_y : {1.0, -1.0}) {
+                CAPTURE(behind);
+                const double at_x = sign_x * 20.5 / 80, at_y = sign_y * (30.5 + behind) / 100;
+                const double radius_mm = 3, before_rad = 0.08, sweep_rad = 0.2;
+                // At 45 degrees through the place, towards larger sizes of both.
+                const double at_rad = std::atan2(-sign_y, sign_x), turn = sign_x * sign_y;
+                const double cx = at_x - radius_mm * std::cos(at_rad);
+                const double cy = at_y - radius_mm * std::sin(at_rad);
+                const double start_rad = at_rad - turn * before_rad;
+                const AxisValues start{cx + radius_mm * std::cos(start_rad),
+                                       cy + radius_mm * std::sin(start_rad), 0, 0};
+                const std::vector<PathCurve> curves{line(origin_mm, start),
+                                                    arc(start, cx, cy, turn * sweep_rad, 0, 0)};
+                const std::vector<TestStep> steps = perfect_steps(curves);
+                CHECK(check(curves, steps).worst_steps < 0.5 + sampling_slack);
+                // A step that is missing there is still found, on either axis.
+                for (const std::size_t axis : {0u, 1u}) {
+                    std::vector<TestStep> fewer = steps;
+                    int passed = axis == 0 ? 21 : 31;
+                    auto place = fewer.begin();
+                    while (place->axis != axis || --passed != 0) ++place;
+                    fewer.erase(place);
+                    CHECK(check(curves, fewer).worst_steps > 0.9);
+                }
+            }
+}
+
 TEST_CASE("path check: an error of the file ends it and is kept") {
     PathCheck path(steps_per_mm, origin_mm, [](PathCurve&) -> Result<bool> {
         return Diagnostic{Severity::error, ExitStatus::input, "cut short", {}};
