@@ -4,13 +4,12 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "bench/arc_share.h"
+#include "bench/part_layers.h"
 #include "bench/scratch_file.h"
-#include "bench/step_files.h"
 #include "bench/table.h"
 #include "slicer/bounds.h"
 
@@ -20,9 +19,7 @@ using namespace lyr;
 using namespace lyr::bench;
 
 struct Arguments {
-    std::string files = LYR_FIXTURES "/parts";
-    double layer_height_mm = 0.2;
-    std::size_t layers = 40;
+    PartLayers parts{.layers = 40};
     double largest_mm = 500;
     bool freeform = false, each = false;
 };
@@ -31,7 +28,8 @@ constexpr double wanted_share = 0.95;
 constexpr double mm_per_m = 1e3;
 
 struct Totals {
-    std::size_t files = 0, freeform = 0, large = 0, not_printed = 0, straight = 0, below = 0;
+    FileCount files{};
+    std::size_t printed = 0, freeform = 0, large = 0, not_printed = 0, straight = 0, below = 0;
     ArcShares shares;
 };
 
@@ -69,7 +67,7 @@ Result<ArcShares> measured(const Model& model, const Arguments& arguments) {
     slicer::Options options;
     options.threads = 1;
     options.profile.layer.height_mm = options.profile.layer.first_height_mm =
-        arguments.layer_height_mm;
+        arguments.parts.layer_height_mm;
     const auto lyr = ScratchFile::with("");
     if (!lyr) return lyr.error();
     Diagnostics found;
@@ -77,31 +75,28 @@ Result<ArcShares> measured(const Model& model, const Arguments& arguments) {
         model, "part", lyr->path(), "", options, [](const char*, std::size_t, std::size_t) {},
         found);
     if (!printed) return printed.error();
-    return arc_shares(model, lyr->path(), options, arguments.layers);
+    return arc_shares(model, lyr->path(), options, arguments.parts.layers);
 }
 
-void measure_file(const std::string& path, const Arguments& arguments, Table& table,
-                  Totals& totals) {
+void measure(const std::string& name, const Model& model, const Arguments& arguments, Table& table,
+             Totals& totals) {
     const slicer::Options options;
-    Diagnostics found;
-    const auto model = slicer::load(path, options, found);
-    if (model && !is_elementary(*model) && !arguments.freeform) {
+    if (!is_elementary(model) && !arguments.freeform) {
         ++totals.freeform;
         return;
     }
-    if (model && slicer::bounding_box(*model, options.tolerance()).sizes().maxCoeff() >
-                     arguments.largest_mm) {
+    if (slicer::bounding_box(model, options.tolerance()).sizes().maxCoeff() >
+        arguments.largest_mm) {
         ++totals.large;
         return;
     }
-    const auto shares = model ? measured(*model, arguments) : Result<ArcShares>(model.error());
+    const auto shares = measured(model, arguments);
     if (!shares) {
-        std::printf("not printed: %s: %s\n", std::filesystem::path(path).filename().c_str(),
-                    shares.error().message.c_str());
+        std::printf("not printed: %s: %s\n", name.c_str(), shares.error().message.c_str());
         ++totals.not_printed;
         return;
     }
-    ++totals.files;
+    ++totals.printed;
     if (!(shares->walls.all_mm > 0)) {
         ++totals.straight;
         return;
@@ -109,8 +104,7 @@ void measure_file(const std::string& path, const Arguments& arguments, Table& ta
     const bool is_below =
         shares->walls.value() < wanted_share || shares->cylinders.value() < wanted_share;
     totals.below += is_below;
-    if (is_below || arguments.each)
-        table.rows.push_back(row(std::filesystem::path(path).filename(), *shares));
+    if (is_below || arguments.each) table.rows.push_back(row(name, *shares));
     add(*shares, totals.shares);
 }
 
@@ -119,9 +113,7 @@ void measure_file(const std::string& path, const Arguments& arguments, Table& ta
 int main(int argc, char** argv) {
     Arguments arguments;
     CLI::App app("Arcs: their share of what is curved, in printed files");
-    app.add_option("--files", arguments.files, "a STEP file or a folder of them");
-    app.add_option("--layer-height", arguments.layer_height_mm, "in mm");
-    app.add_option("--layers", arguments.layers, "at most so many of a file, evenly spread");
+    add_options(app, arguments.parts);
     app.add_option("--largest", arguments.largest_mm, "parts that are larger are left out, in mm");
     app.add_flag("--freeform", arguments.freeform, "parts with free-form faces too");
     app.add_flag("--each", arguments.each, "a row for each file, not only for those below 95 %");
@@ -132,15 +124,17 @@ int main(int argc, char** argv) {
                 {"file", "layers", "outlines m", "arcs %", "walls m", "arcs %", "flat m",
                  "on cylinders m", "concentric %", "off quanta", "centre off"},
                 {}};
-    for (const std::string& path : step_files(arguments.files))
-        measure_file(path, arguments, table, totals);
+    totals.files =
+        for_parts(arguments.parts.files, [&](const std::string& name, const Model& model) {
+            measure(name, model, arguments, table, totals);
+        });
     table.rows.push_back(row("all", totals.shares));
     print(table);
     std::printf(
         "%zu files printed, %zu of them straight throughout, %zu below 95 %%\n"
         "left out: %zu with free-form faces, %zu too large, %zu not printed\n",
-        totals.files, totals.straight, totals.below, totals.freeform, totals.large,
-        totals.not_printed);
+        totals.printed, totals.straight, totals.below, totals.freeform, totals.large,
+        totals.not_printed + totals.files.unread);
     return print({{"walls: arcs of what is curved", 100 * totals.shares.walls.value(), 95, false,
                    "%"},
                   {"walls on cylinders: concentric", 100 * totals.shares.cylinders.value(), 95,

@@ -10,11 +10,9 @@
 #include <vector>
 
 #include "bench/measure.h"
-#include "bench/step_files.h"
+#include "bench/part_layers.h"
 #include "bench/table.h"
 #include "kernel/toolpath/offset.h"
-#include "slicer/layers.h"
-#include "slicer/slicer.h"
 
 namespace {
 
@@ -23,10 +21,9 @@ using namespace lyr::bench;
 using namespace lyr::testing;
 
 struct Arguments {
-    std::string files = LYR_FIXTURES "/parts";
-    std::size_t layers = 10;  // of a file
-    double walls_mm = 1.3;    // three strands
-    double width_mm = 0.45, height_mm = 0.2, overlap = 0.25;
+    PartLayers parts{.layers = 10};
+    double walls_mm = 1.3;  // three strands
+    double width_mm = 0.45, overlap = 0.25;
     double allowed_mm = 0.005;
     bool coverage = false;
 };
@@ -84,7 +81,7 @@ void measure(const Layer& layer, const Pattern& pattern, const Arguments& argume
         fill = infill(layer.inside, {.pattern = pattern.pattern,
                                      .density = pattern.density,
                                      .width_mm = arguments.width_mm,
-                                     .height_mm = arguments.height_mm,
+                                     .height_mm = arguments.parts.layer_height_mm,
                                      .angle_rad = diagonal_rad,
                                      .z_mm = layer.z_mm,
                                      .layer = layer.index,
@@ -104,32 +101,15 @@ void measure(const Layer& layer, const Pattern& pattern, const Arguments& argume
     }
 }
 
-void measure_file(const std::string& path, const Arguments& arguments,
-                  std::vector<Totals>& totals) {
-    const slicer::Options options;
-    Diagnostics found;
-    const auto model = slicer::load(path, options, found);
-    if (!model) return;
-    const Cutter cutter(*model, options.tolerance());
-    const HeightRange range = cutter.height_range();
-    const auto heights = slicer::layer_middles(range.top_mm - range.bottom_mm, arguments.height_mm);
-    const std::size_t taken = std::min(heights.size(), arguments.layers);
-    for (std::size_t i = 0; i < taken; ++i) {
-        const std::size_t index = (2 * i + 1) * heights.size() / (2 * taken);
-        const Contours section =
-            slicer::region_of(cutter.cut(range.bottom_mm + heights[index]), options.tolerance())
-                .contours;
-        const auto inwards = [&](double distance_mm) {
-            return offset(section, {-distance_mm, arguments.allowed_mm / 10}).contours;
-        };
-        const double middle_mm =
-            arguments.walls_mm + (0.5 - arguments.overlap) * arguments.width_mm;
-        if (section.empty()) continue;
-        const Layer layer{index, heights[index], inwards(middle_mm), inwards(arguments.walls_mm)};
-        if (layer.inside.empty() || box_of(layer.inside).sizes().maxCoeff() > widest_mm) continue;
-        for (std::size_t p = 0; p < std::size(patterns); ++p)
-            measure(layer, patterns[p], arguments, totals[p]);
-    }
+void measure(const PartLayer& part, const Arguments& arguments, std::vector<Totals>& totals) {
+    const auto inwards = [&](double distance_mm) {
+        return offset(part.region, {-distance_mm, arguments.allowed_mm / 10}).contours;
+    };
+    const double middle_mm = arguments.walls_mm + (0.5 - arguments.overlap) * arguments.width_mm;
+    const Layer layer{part.index, part.z_mm, inwards(middle_mm), inwards(arguments.walls_mm)};
+    if (layer.inside.empty() || box_of(layer.inside).sizes().maxCoeff() > widest_mm) return;
+    for (std::size_t p = 0; p < std::size(patterns); ++p)
+        measure(layer, patterns[p], arguments, totals[p]);
 }
 
 // Round-off is nothing.
@@ -162,16 +142,17 @@ void print(const std::vector<Totals>& all, const Arguments& arguments) {
 int main(int argc, char** argv) {
     Arguments arguments;
     CLI::App app("Infill of the layers of real parts");
-    app.add_option("--files", arguments.files, "a STEP file or a folder of them");
-    app.add_option("--layers", arguments.layers, "at most so many of a file, evenly spread");
+    add_options(app, arguments.parts);
     app.add_option("--walls", arguments.walls_mm, "in mm, around the infill");
     app.add_option("--overlap", arguments.overlap, "with the walls, of the strands' width");
     app.add_flag("--coverage", arguments.coverage, "of solid fill, on lines 10 um apart");
     CLI11_PARSE(app, argc, argv);
 
     std::vector<Totals> totals(std::size(patterns));
-    for (const std::string& path : step_files(arguments.files))
-        measure_file(path, arguments, totals);
+    for_parts(arguments.parts.files, [&](const std::string& name, const Model& model) {
+        for (const PartLayer& part : layers_of(name, model, arguments.parts))
+            measure(part, arguments, totals);
+    });
     print(totals, arguments);
     return std::all_of(totals.begin(), totals.end(),
                        [](const Totals& of) { return of.unresolved == 0; })

@@ -8,18 +8,15 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "bench/measure.h"
-#include "bench/step_files.h"
+#include "bench/part_layers.h"
 #include "bench/table.h"
 #include "kernel/polygons.h"
 #include "kernel/toolpath/offset.h"
-#include "slicer/layers.h"
-#include "slicer/slicer.h"
 
 namespace {
 
@@ -28,10 +25,8 @@ using namespace lyr::bench;
 using namespace lyr::testing;
 
 struct Arguments {
-    std::string files = LYR_FIXTURES "/parts";
+    PartLayers parts{.layer_height_mm = 0.5};
     std::vector<double> distances_mm{-5, -2, -1, -0.6, -0.2, 0.2, 0.6, 2, 5};
-    double layer_height_mm = 0.5;
-    std::size_t layers = 20;  // of a file, at most
     double allowed_mm = 1e-4;
     double walls_mm = 0;  // their width
     bool polygons = true;
@@ -52,21 +47,16 @@ constexpr double least_disc_mm = 0.1e-3;
 constexpr double disc_factor = 1.25;
 
 struct Totals {
-    std::size_t files = 0, unread = 0, layers = 0, crossed = 0, segments = 0, offsets = 0;
+    FileCount files{};
+    std::size_t layers = 0, crossed = 0, segments = 0, offsets = 0;
     std::size_t second_method = 0, unresolved = 0, slivers = 0;
     std::size_t finer = 0, differ = 0, counts_differ = 0;
     double ours_s = 0, polygons_s = 0, worst_area_mm = 0, worst_mm = 0;
     double longest_s = 0;
 };
 
-struct Layer {
-    std::string name;
-    double z_mm;
-    std::vector<Contour> region;
-};
-
-void report(const Layer& layer, double distance_mm, const std::string& what) {
-    std::printf("%s, z = %.4f, by %g mm: %s\n", layer.name.c_str(), layer.z_mm, distance_mm,
+void report(const PartLayer& layer, double distance_mm, const std::string& what) {
+    std::printf("%s, z = %.4f, by %g mm: %s\n", layer.part.c_str(), layer.z_mm, distance_mm,
                 what.c_str());
 }
 
@@ -83,7 +73,7 @@ struct Comparison {
     double library_s = 0;
 };
 
-Comparison compared(const Layer& layer, Region contours, double distance_mm, double chord_mm,
+Comparison compared(const PartLayer& layer, Region contours, double distance_mm, double chord_mm,
                     const Arguments& arguments) {
     Comparison result;
     ClipperLib::Paths theirs;
@@ -105,8 +95,8 @@ Comparison compared(const Layer& layer, Region contours, double distance_mm, dou
     return result;
 }
 
-void compare(const Layer& layer, Region contours, double distance_mm, const Arguments& arguments,
-             Totals& totals) {
+void compare(const PartLayer& layer, Region contours, double distance_mm,
+             const Arguments& arguments, Totals& totals) {
     double chord_mm = coarse_chord_mm;
     Comparison found = compared(layer, contours, distance_mm, chord_mm, arguments);
     totals.polygons_s += found.library_s;
@@ -134,7 +124,8 @@ void compare(const Layer& layer, Region contours, double distance_mm, const Argu
 }
 
 // Whether anything is left.
-bool measure(const Layer& layer, double distance_mm, const Arguments& arguments, Totals& totals) {
+bool measure(const PartLayer& layer, double distance_mm, const Arguments& arguments,
+             Totals& totals) {
     ++totals.offsets;
     OffsetResult result;
     const double seconds = time_of_s([&] {
@@ -154,8 +145,9 @@ bool measure(const Layer& layer, double distance_mm, const Arguments& arguments,
     return !result.contours.empty();
 }
 
-void measure(const Layer& layer, const Arguments& arguments, Totals& totals) {
+void measure(const PartLayer& layer, const Arguments& arguments, Totals& totals) {
     ++totals.layers;
+    totals.crossed += layer.crossed;
     for (const Contour& contour : layer.region) {
         totals.segments += count(contour).lines + count(contour).arcs;
     }
@@ -167,41 +159,14 @@ void measure(const Layer& layer, const Arguments& arguments, Totals& totals) {
     while (measure(layer, -inwards_mm, arguments, totals)) inwards_mm += arguments.walls_mm;
 }
 
-void measure_file(const std::string& path, const Arguments& arguments, Totals& totals) {
-    const slicer::Options options;
-    const Tolerance tolerance = options.tolerance();
-    Diagnostics found;
-    const auto model = slicer::load(path, options, found);
-    if (!model) {
-        ++totals.unread;
-        return;
-    }
-    ++totals.files;
-    const Cutter cutter(*model, tolerance);
-    const HeightRange range = cutter.height_range();
-    const auto heights =
-        slicer::layer_middles(range.top_mm - range.bottom_mm, arguments.layer_height_mm);
-    const std::size_t taken = std::min(heights.size(), arguments.layers);
-    for (std::size_t i = 0; i < taken; ++i) {
-        const double z_mm = range.bottom_mm + heights[(2 * i + 1) * heights.size() / (2 * taken)];
-        const auto section = slicer::region_of(cutter.cut(z_mm), tolerance).contours;
-        // Where faces of the model overlap a little, the section crosses itself: no region, and each would make
-        // something else of it.
-        RegionResult region = cleaned(section, tolerance.unite_mm());
-        totals.crossed += region.changed;
-        const Layer layer{std::filesystem::path(path).filename(), z_mm, std::move(region.contours)};
-        if (layer.region.empty()) continue;
-        measure(layer, arguments, totals);
-    }
-}
-
 void print(const Totals& totals) {
     const auto n = [](std::size_t value) { return std::to_string(value); };
     const double offsets = static_cast<double>(totals.offsets);
     bench::print(Table{
         "Offsets of layers",
         {"what", "figure"},
-        {{"files (and that cannot be read)", n(totals.files) + " (" + n(totals.unread) + ")"},
+        {{"files (and that cannot be read)",
+          n(totals.files.read) + " (" + n(totals.files.unread) + ")"},
          {"layers, with segments", n(totals.layers) + ", " + n(totals.segments)},
          {"of them, sections that cross themselves", n(totals.crossed)},
          {"offsets", n(totals.offsets)},
@@ -224,10 +189,8 @@ void print(const Totals& totals) {
 int main(int argc, char** argv) {
     Arguments arguments;
     CLI::App app("Offsets of layers beside those of a polygon library");
-    app.add_option("--files", arguments.files, "a STEP file or a folder of them");
+    add_options(app, arguments.parts);
     app.add_option("--distances", arguments.distances_mm, "in mm, positive: outwards");
-    app.add_option("--layer-height", arguments.layer_height_mm, "in mm");
-    app.add_option("--layers", arguments.layers, "at most so many of a file, evenly spread");
     app.add_option("--allowed", arguments.allowed_mm, "in mm");
     app.add_option("--walls", arguments.walls_mm,
                    "besides, from half this width inwards in steps of it until nothing is left");
@@ -235,10 +198,11 @@ int main(int argc, char** argv) {
     CLI11_PARSE(app, argc, argv);
 
     Totals totals;
-    for (const std::string& path : step_files(arguments.files)) {
-        measure_file(path, arguments, totals);
-        std::fflush(stdout);
-    }
+    totals.files =
+        for_parts(arguments.parts.files, [&](const std::string& name, const Model& model) {
+            for (const PartLayer& layer : layers_of(name, model, arguments.parts))
+                measure(layer, arguments, totals);
+        });
     print(totals);
     return totals.unresolved + totals.differ == 0 ? 0 : 1;
 }

@@ -9,14 +9,12 @@
 #include <vector>
 
 #include "bench/measure.h"
-#include "bench/step_files.h"
+#include "bench/part_layers.h"
 #include "bench/table.h"
 #include "kernel/toolpath/hatch.h"
 #include "kernel/toolpath/islands.h"
 #include "kernel/toolpath/layer_order.h"
 #include "kernel/toolpath/offset.h"
-#include "slicer/layers.h"
-#include "slicer/slicer.h"
 
 namespace {
 
@@ -24,9 +22,7 @@ using namespace lyr;
 using namespace lyr::bench;
 
 struct Arguments {
-    std::string files = LYR_FIXTURES "/parts";
-    double layer_height_mm = 0.2;
-    std::size_t layers = 150;  // of a file, at most, from the bottom
+    PartLayers parts{.layers = 150, .which = PartLayers::Which::from_bottom};
     std::uint32_t walls = 3;
     double width_mm = 0.45;
     double fill_pitch_mm = 2.8;  // 15 % of such lines
@@ -43,7 +39,8 @@ struct Layer {
 };
 
 struct Totals {
-    std::size_t files = 0, unread = 0, layers = 0, walls = 0, segments = 0, pieces = 0;
+    FileCount files{};
+    std::size_t layers = 0, walls = 0, segments = 0, pieces = 0;
     std::size_t ways = 0, bent = 0, cross = 0, cross_within = 0;
     double seams_s = 0, regions_s = 0, order_s = 0, ways_s = 0, longest_s = 0;
     double travel_mm = 0, made_mm = 0;
@@ -149,37 +146,14 @@ void measure(const Layer& layer, const Arguments& arguments, double allowed_mm,
     totals.made_mm += travel_as_made(layer);
 }
 
-void measure_file(const std::string& path, const Arguments& arguments, Totals& totals) {
-    const slicer::Options options;
-    const double allowed_mm = options.tolerance().total_mm;
-    Diagnostics found;
-    const auto model = slicer::load(path, options, found);
-    if (!model) {
-        ++totals.unread;
-        return;
-    }
-    ++totals.files;
-    const Cutter cutter(*model, options.tolerance());
-    const HeightRange range = cutter.height_range();
-    const auto heights =
-        slicer::layer_middles(range.top_mm - range.bottom_mm, arguments.layer_height_mm);
-    std::vector<Seam> seams;
-    for (std::size_t i = 0; i < std::min(heights.size(), arguments.layers); ++i) {
-        const Section section = cutter.cut(range.bottom_mm + heights[i]);
-        std::vector<Contour> region = slicer::region_of(section, options.tolerance()).contours;
-        if (region.empty()) continue;
-        measure(layer_of(std::move(region), i, arguments, allowed_mm), arguments, allowed_mm, seams,
-                totals);
-    }
-}
-
 void print(const Totals& totals) {
     const auto n = [](std::size_t value) { return std::to_string(value); };
     const double layers = static_cast<double>(std::max<std::size_t>(1, totals.layers));
     bench::print(Table{
         "Order of layers",
         {"what", "figure"},
-        {{"files (and that cannot be read)", n(totals.files) + " (" + n(totals.unread) + ")"},
+        {{"files (and that cannot be read)",
+          n(totals.files.read) + " (" + n(totals.files.unread) + ")"},
          {"layers", n(totals.layers)},
          {"walls, with segments", n(totals.walls) + ", " + n(totals.segments)},
          {"lines of fill", n(totals.pieces)},
@@ -199,17 +173,21 @@ void print(const Totals& totals) {
 int main(int argc, char** argv) {
     Arguments arguments;
     CLI::App app("Order of layers: its time, and how far the head travels");
-    app.add_option("--files", arguments.files, "a STEP file or a folder of them");
-    app.add_option("--layer-height", arguments.layer_height_mm, "in mm");
-    app.add_option("--layers", arguments.layers, "at most so many of a file, from the bottom");
+    add_options(app, arguments.parts);
     app.add_option("--walls", arguments.walls, "of each contour");
     app.add_option("--fill-pitch", arguments.fill_pitch_mm, "in mm");
     app.add_option("--seam", arguments.seam, "0 nearest, 1 rear, 2 aligned, 3 sharp");
     CLI11_PARSE(app, argc, argv);
 
     Totals totals;
-    for (const std::string& path : step_files(arguments.files))
-        measure_file(path, arguments, totals);
+    const double allowed_mm = slicer::Options{}.tolerance().total_mm;
+    totals.files =
+        for_parts(arguments.parts.files, [&](const std::string& name, const Model& model) {
+            std::vector<Seam> seams;
+            for (PartLayer& part : layers_of(name, model, arguments.parts))
+                measure(layer_of(std::move(part.region), part.index, arguments, allowed_mm),
+                        arguments, allowed_mm, seams, totals);
+        });
     print(totals);
     return 0;
 }
