@@ -12,10 +12,6 @@ namespace {
 
 constexpr std::int64_t largest_row = std::int64_t{1} << 32;
 
-bool beyond(std::int64_t value, std::int64_t limit) {
-    return value < -limit || value > limit;
-}
-
 }  // namespace
 
 void ChunkDecoder::begin_layer(const Point& start, Quantum quantum) {
@@ -41,6 +37,8 @@ ChunkDecoder::Step ChunkDecoder::next(Operation& out) {
         bool given = false;
         if (run_left_ > 0) {
             given = decode_run(out);
+        } else if (packed_left_ > 0) {
+            given = decode_packed(out);
         } else if (stage_ != HatchStage::none) {
             given = decode_hatch_step(out);
         } else if (wipes_) {
@@ -65,7 +63,7 @@ bool ChunkDecoder::decode(std::uint8_t code, Operation& out) {
         operations_ += static_cast<std::uint64_t>(run_left_ - 1);
         return decode_run(out);
     }
-    if (code <= opcode::hatch) return decode_motion(code, out);
+    if (code <= opcode::parallel) return decode_motion(code, out);
     if (code <= opcode::travel_acceleration) return decode_style(code, out);
     if (code == opcode::wipe) return decode_wipe(out);
     if (code >= opcode::first_skippable) {
@@ -105,6 +103,10 @@ bool ChunkDecoder::decode_motion(std::uint8_t code, Operation& out) {
             return decode_circle(false, true, out);
         case opcode::grid:
             return decode_grid();
+        case opcode::smooth:
+            return decode_smooth(out);
+        case opcode::parallel:
+            return decode_parallel(out);
         default:
             return decode_hatch(out);
     }
@@ -207,6 +209,7 @@ bool ChunkDecoder::decode_line(bool with_z, Operation& out) {
     if (!may_extrude()) return false;
     if (!in_range(to) || from == to) return false;
     out = Line{from, to, false};
+    if (!with_z) history_.add(plane_motion(from, to, 0));
     at_ = to;
     return true;
 }
@@ -216,11 +219,10 @@ bool ChunkDecoder::decode_arc(bool with_z, Operation& out) {
     const std::int64_t sagitta = cursor_.signed_varint();
     if (!may_extrude()) return false;
     if (!in_range(to)) return false;
-    const auto dx = static_cast<double>(to.x - from.x), dy = static_cast<double>(to.y - from.y);
-    const auto rise = static_cast<double>(sagitta);
-    const double most = most_sagitta_per_chord * most_sagitta_per_chord * (dx * dx + dy * dy);
-    if (sagitta == 0 || rise * rise > most) return fail("an arc has no or too large a sagitta");
+    if (sagitta == 0 || !is_arc(from, to, sagitta))
+        return fail("an arc has no or too large a sagitta");
     out = Arc{from, to, sagitta};
+    if (!with_z) history_.add(plane_motion(from, to, sagitta));
     at_ = to;
     return true;
 }
@@ -367,13 +369,6 @@ Point ChunkDecoder::step_from(const Point& from, bool with_z) {
     to.y = add(from.y, cursor_.signed_varint());
     if (with_z) to.z = add(from.z, cursor_.signed_varint());
     return to;
-}
-
-bool ChunkDecoder::in_range(const Point& point) {
-    if (!beyond(point.x, coordinate_limit) && !beyond(point.y, coordinate_limit) &&
-        !beyond(point.z, coordinate_limit))
-        return true;
-    return fail("a position is out of range");
 }
 
 std::uint32_t ChunkDecoder::number() {

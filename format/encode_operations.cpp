@@ -87,12 +87,27 @@ void LayerEncoder::Implementation::close_chunk() {
 }
 
 void LayerEncoder::Implementation::begin_operation(std::size_t most_bytes) {
-    if (out_.bytes.size() - chunk_begin_ + most_bytes > most_chunk_bytes) close_chunk();
+    flush_motions();
+    make_room(most_bytes);
     ++chunk_operations_;
     run_at_.reset();
 }
 
-// Lines and arcs share the opcode of the one before, as long as its count has room.
+void LayerEncoder::Implementation::make_room(std::size_t most_bytes) {
+    if (out_.bytes.size() - chunk_begin_ + most_bytes > most_chunk_bytes) close_chunk();
+}
+
+void LayerEncoder::Implementation::flush_motions() {
+    if (!packer_.waits()) return;
+    packer_.flush([&](std::span<const std::byte> bytes, std::size_t motions) {
+        make_room(bytes.size());
+        chunk_operations_ += motions;
+        out_.bytes.insert(out_.bytes.end(), bytes.begin(), bytes.end());
+    });
+    run_at_.reset();
+}
+
+// Climbing lines and arcs share the opcode of the one before, as long as its count has room.
 void LayerEncoder::Implementation::begin_run(std::uint8_t code, std::size_t most_bytes) {
     const std::optional<std::size_t> run = run_at_;
     begin_operation(most_bytes);
@@ -162,10 +177,20 @@ void LayerEncoder::Implementation::line_to(double x_mm, double y_mm, const doubl
 
 void LayerEncoder::Implementation::put_line(const Point& to) {
     if (to == at_) return;
-    const bool with_z = to.z != at_.z;
-    begin_run(with_z ? opcode::line_z : opcode::line, most_operation_bytes);
-    put_step(to, with_z);
+    put_motion(to, 0);
     count_line(to);
+}
+
+// Of sagitta 0: a line.
+void LayerEncoder::Implementation::put_motion(const Point& to, std::int64_t sagitta) {
+    if (to.z == at_.z) {
+        packer_.add(plane_motion(at_, to, sagitta));
+        run_at_.reset();
+        return;
+    }
+    begin_run(sagitta == 0 ? opcode::line_z : opcode::arc_z, most_operation_bytes);
+    put_step(to, true);
+    if (sagitta != 0) put_signed(out_.bytes, sagitta);
 }
 
 void LayerEncoder::Implementation::arc_to(double x_mm, double y_mm, const double* z_mm,
@@ -184,10 +209,7 @@ void LayerEncoder::Implementation::arc_to(double x_mm, double y_mm, const double
         put_line(*to);
         return;
     }
-    const bool with_z = to->z != at_.z;
-    begin_run(with_z ? opcode::arc_z : opcode::arc, most_operation_bytes);
-    put_step(*to, with_z);
-    put_signed(out_.bytes, rounded);
+    put_motion(*to, rounded);
     const ArcShape shape = arc_shape(Arc{at_, *to, rounded});
     include_arc(shape.center_x, shape.center_y, shape.radius, shape.start_angle_rad,
                 shape.sweep_rad);

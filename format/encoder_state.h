@@ -10,6 +10,7 @@
 
 #include "format/bytes.h"
 #include "format/grid.h"
+#include "format/motion_packer.h"
 #include "format/row_predictor.h"
 #include "format/writer.h"
 
@@ -65,12 +66,16 @@ private:
     std::optional<std::int64_t> quanta(double mm);
     std::optional<Point> point(double x_mm, double y_mm, const double* z_mm);
 
+    // What waits is put first.
     void begin_operation(std::size_t most_bytes);
+    void flush_motions();
+    void make_room(std::size_t most_bytes);
     void put_step(const Point& to, bool with_z);
     void begin_run(std::uint8_t code, std::size_t most_bytes);
     void close_chunk();
 
     void put_line(const Point& to);
+    void put_motion(const Point& to, std::int64_t sagitta);
     // What is rounded of some pieces of a wipe, from the head on.
     struct Wiped {
         Point to;
@@ -104,6 +109,7 @@ private:
     std::size_t chunk_begin_ = 0;
     std::uint64_t chunk_operations_ = 0;
     std::optional<std::size_t> run_at_;  // the opcode of a run that may grow
+    MotionPacker packer_;
 
     Point at_;
     double given_x_mm_ = 0, given_y_mm_ = 0;  // the same before rounding
