@@ -139,7 +139,8 @@ private:
     std::uint64_t peek() const {
         if (left() >= 8) return get_u64(at_) >> bit_;
         std::uint64_t ahead = 0;
-        for (std::size_t i = left(); i > 0; --i) ahead = ahead << 8 | static_cast<std::uint64_t>(at_[i - 1]);
+        for (std::size_t i = left(); i > 0; --i)
+            ahead = ahead << 8 | static_cast<std::uint64_t>(at_[i - 1]);
         return ahead >> bit_;
     }
 

@@ -41,7 +41,7 @@ ChunkDecoder::Step ChunkDecoder::next(Operation& out) {
             given = decode_packed(out);
         } else if (stage_ != HatchStage::none) {
             given = decode_hatch_step(out);
-        } else if (wipes_) {
+        } else if (wipe_left_ > 0) {
             given = decode_wipe_piece(out);
         } else if (cursor_.at_end()) {
             if (operations_ == stated_operations_) return Step::end;
@@ -63,9 +63,8 @@ bool ChunkDecoder::decode(std::uint8_t code, Operation& out) {
         operations_ += static_cast<std::uint64_t>(run_left_ - 1);
         return decode_run(out);
     }
-    if (code <= opcode::parallel) return decode_motion(code, out);
+    if (code <= opcode::wipe) return decode_motion(code, out);
     if (code <= opcode::travel_acceleration) return decode_style(code, out);
-    if (code == opcode::wipe) return decode_wipe(out);
     if (code >= opcode::first_skippable) {
         cursor_.skip(cursor_.varint());
         return false;
@@ -107,6 +106,8 @@ bool ChunkDecoder::decode_motion(std::uint8_t code, Operation& out) {
             return decode_smooth(out);
         case opcode::parallel:
             return decode_parallel(out);
+        case opcode::wipe:
+            return decode_wipe(out);
         default:
             return decode_hatch(out);
     }
@@ -200,8 +201,7 @@ bool ChunkDecoder::decode_machine(std::uint8_t code, Operation& out) {
 }
 
 bool ChunkDecoder::may_extrude() {
-    if (!has_path_) return fail("extrusion before a path begins");
-    return wiped_ ? fail("extrusion does not begin where a wipe has ended") : true;
+    return has_path_ || fail("extrusion before a path begins");
 }
 
 bool ChunkDecoder::decode_line(bool with_z, Operation& out) {
@@ -228,10 +228,9 @@ bool ChunkDecoder::decode_arc(bool with_z, Operation& out) {
 }
 
 bool ChunkDecoder::decode_travel(bool with_z, Operation& out) {
-    const Point from = head(), to = step(with_z);
+    const Point from = at_, to = step(with_z);
     if (!in_range(to)) return false;
     at_ = to;
-    wiped_ = false;
     out = Travel{from, to, false};
     return from != to;
 }
@@ -336,12 +335,10 @@ bool ChunkDecoder::hatch_point(Point& point) {
 
 bool ChunkDecoder::decode_hatch_step(Operation& out) {
     if (stage_ == HatchStage::row && !begin_hatch_row()) return false;
-    if (linked_ && !may_extrude()) return false;
-    const Point from = head();
+    const Point from = at_;
     Point to;
     if (!hatch_point(to)) return false;
     at_ = to;
-    wiped_ = false;
     if (stage_ == HatchStage::start) {
         stage_ = HatchStage::end;
         if (from == to) return false;

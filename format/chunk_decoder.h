@@ -80,9 +80,8 @@ private:
             return true;
         return fail("a position is out of range");
     }
-    // A path has begun, and the head is where the next operation begins.
+    // A path has begun.
     bool may_extrude();
-    const Point& head() const { return wiped_ ? wiped_to_ : at_; }
     std::uint32_t number();
     double setting(double per_unit);
 
@@ -118,11 +117,8 @@ private:
     std::int64_t row_ = 0, row_offset_ = 0;
     std::uint64_t rows_left_ = 0, group_rows_left_ = 0, intervals_ = 0, ends_left_ = 0;
 
-    Point wiped_to_;      // the head, away from at_ ...
-    bool wiped_ = false;  // ... until it travels on
-    bool wipes_ = false;
-    std::size_t wipe_end_ = 0;
-    double wipe_depth_mm_ = 0, wipe_left_ = 0;  // quanta
+    std::uint64_t wipe_left_ = 0;                     // pieces
+    double wipe_depth_mm_ = 0, wipe_way_quanta_ = 0;  // of these pieces
 };
 
 }  // namespace lyr::format

@@ -60,7 +60,6 @@ private:
     // Keeps the first mistake.
     void mistake(const std::string& what);
     bool has_path();
-    bool may_extrude();
     // None: a mistake.
     std::optional<std::uint64_t> checked(double value, double per_unit, const char* name);
     std::optional<std::int64_t> quanta(double mm);
@@ -76,7 +75,7 @@ private:
 
     void put_line(const Point& to);
     void put_motion(const Point& to, std::int64_t sagitta);
-    // What is rounded of some pieces of a wipe, from the head on.
+    // What is rounded of some pieces of a wipe.
     struct Wiped {
         Point to;
         std::int64_t sagitta = 0;
@@ -84,7 +83,6 @@ private:
     };
     std::vector<Wiped> rounded(std::span<const WipePiece> pieces);
     void put_wipe(std::span<const Wiped> pieces, double depth_mm);
-    Point head() const { return wiped_to_.value_or(at_); }
     void count_extrusion(double length_quanta);
     void count_travel(const Point& to);
     void count_line(const Point& to);
@@ -113,7 +111,6 @@ private:
 
     Point at_;
     double given_x_mm_ = 0, given_y_mm_ = 0;  // the same before rounding
-    std::optional<Point> wiped_to_;           // the head, where a wipe has led it away from at_
     PathStyle style_;                         // as the reader will have it
     bool has_path_ = false;
     double extruded_ = 0, travelled_ = 0;  // quanta

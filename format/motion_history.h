@@ -100,8 +100,8 @@ struct Place {
     std::int64_t x = 0, y = 0;
 };
 
-inline Place end_beside(const PlaneMotion& old, const Course& course, Vector next,
-                        double next_size, double distance) {
+inline Place end_beside(const PlaneMotion& old, const Course& course, Vector next, double next_size,
+                        double distance) {
     double cosine = course.end.x * next.x + course.end.y * next.y, one = course.size * next_size;
     if (cosine < -0.5 * one) {
         next = course.end;

@@ -21,8 +21,8 @@ std::size_t plain_bytes(std::span<const PlaneMotion> motions) {
     std::size_t bytes = 0, run = 0;
     const PlaneMotion* before = nullptr;
     for (const PlaneMotion& motion : motions) {
-        const bool goes_on = before && (before->sagitta == 0) == (motion.sagitta == 0) &&
-                             run < opcode::longest_run;
+        const bool goes_on =
+            before && (before->sagitta == 0) == (motion.sagitta == 0) && run < opcode::longest_run;
         run = goes_on ? run + 1 : 1;
         if (!goes_on) ++bytes;
         bytes += varint_bytes(std::int64_t{motion.to_x} - motion.from_x) +

@@ -60,7 +60,7 @@ private:
     std::vector<PlaneMotion> waiting_;
     Bytes operation_;
     std::vector<Off> offs_;
-    std::optional<Beside> found_;  // for the first motion that waits
+    std::optional<Beside> found_;           // for the first motion that waits
     std::int64_t back_ = 0, distance_ = 0;  // of the last run beside others
 };
 

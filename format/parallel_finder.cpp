@@ -117,8 +117,8 @@ std::optional<Beside> ParallelFinder::find(std::span<const PlaneMotion> motions)
     Beside best;
     int looks = 0, candidates = 0;
     for (const std::size_t in : {here, beyond % sectors}) {
-        for (std::uint64_t what = newest_[in]; what != none && what >= first && looks < most_looks &&
-                                               candidates < most_candidates;
+        for (std::uint64_t what = newest_[in];
+             what != none && what >= first && looks < most_looks && candidates < most_candidates;
              what = at(older_, what)) {
             ++looks;
             if (what + 1 >= count) continue;
