@@ -216,10 +216,7 @@ bool ChunkDecoder::decode_arc(bool with_z, Operation& out) {
     const std::int64_t sagitta = cursor_.signed_varint();
     if (!may_extrude()) return false;
     if (!in_range(to)) return false;
-    const auto dx = static_cast<double>(to.x - from.x), dy = static_cast<double>(to.y - from.y);
-    const auto rise = static_cast<double>(sagitta);
-    const double most = most_sagitta_per_chord * most_sagitta_per_chord * (dx * dx + dy * dy);
-    if (sagitta == 0 || rise * rise > most) return fail("an arc has no or too large a sagitta");
+    if (!is_arc(from, to, sagitta)) return fail("an arc has no or too large a sagitta");
     out = Arc{from, to, sagitta};
     at_ = to;
     return true;
@@ -342,12 +339,13 @@ bool ChunkDecoder::decode_hatch_step(Operation& out) {
     wiped_ = false;
     if (stage_ == HatchStage::start) {
         stage_ = HatchStage::end;
+        const bool links = linked_;
+        linked_ = false;
         if (from == to) return false;
-        if (linked_)
+        if (links)
             out = Line{from, to, true};
         else
             out = Travel{from, to, true};
-        linked_ = false;
         return true;
     }
     stage_ = HatchStage::start;

@@ -429,15 +429,6 @@ static bool decode_wipe_piece(lyr_reader* r, lyr_operation* o) {
     return !same(o->from, o->to) && d->wipe_left-- > 0;
 }
 
-void lyr_wipe_again(lyr_reader* r) {
-    lyr_decoder* d = &r->decoder;
-    r->cursor = d->wipe_at;
-    d->wiped_to = d->wipe_from;
-    d->wiped = !same(d->wipe_from, d->head);
-    d->wipe_left = d->wipe_pieces;
-    d->wipes = true;
-}
-
 // Checked and counted as a whole first.
 static bool decode_wipe(lyr_reader* r, lyr_operation* o) {
     lyr_decoder* d = &r->decoder;
@@ -445,19 +436,18 @@ static bool decode_wipe(lyr_reader* r, lyr_operation* o) {
     if (bytes > left_of(r)) return wrong(r, "a wipe is cut short");
     d->wipe_end = r->cursor + bytes;
     d->wipe_depth = get_setting(r);
-    d->wipe_at = r->cursor;
-    d->wipe_from = head(d);
-    d->wipe_pieces = 0;
-    for (lyr_point from = d->wipe_from; r->error.status == LYR_OK && r->cursor < d->wipe_end;) {
+    d->wipe_left = 0;
+    const uint8_t* const pieces = r->cursor;
+    for (lyr_point from = head(d); r->error.status == LYR_OK && r->cursor < d->wipe_end;) {
         const lyr_point to = get_point(r, from, false);
         const int64_t sagitta = get_signed(r);
         if (sagitta != 0 && !is_arc(r, sagitta, from, to)) return false;
-        d->wipe_pieces += !same(from, to);
+        d->wipe_left += !same(from, to);
         from = to;
     }
     if (r->cursor != d->wipe_end) wrong(r, "a wipe is cut short");
     if (r->error.status != LYR_OK) return false;
-    lyr_wipe_again(r);
+    r->cursor = pieces;
     return decode_wipe_piece(r, o);
 }
 

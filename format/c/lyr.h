@@ -128,11 +128,11 @@ typedef struct lyr_grid {
 
 // The rest of a reader's state is its own affair.
 typedef struct lyr_decoder {
-    lyr_point head, wiped_to, wipe_from;  // where operations begin; the head behind, before a wipe
+    lyr_point head, wiped_to;  // where operations begin; the head behind a wipe
     bool has_path, has_grid, wiped, wipes, one_way, forward, linked, group_linked;
     uint8_t run_code, run_left, stage, now, before, two_before, order;
-    const uint8_t *wipe_at, *wipe_end;
-    uint32_t wipe_depth, wipe_pieces, wipe_left;
+    const uint8_t* wipe_end;
+    uint32_t wipe_depth, wipe_left;
     int64_t row, row_offset, ends[3][64], last;
     uint64_t rows_left, group_rows_left, intervals, ends_left, counts[3];
 } lyr_decoder;
@@ -156,14 +156,12 @@ typedef struct lyr_reader {
 
 // Reads up to the first layer. The source is copied; the buffer is in use until the last call.
 bool lyr_open(lyr_reader* reader, const lyr_source* source, void* buffer, size_t size);
-// The next operation. False: the end (LYR_END) or an error.
+// The next operation. False: the end (LYR_END) or an error. All pieces of a wipe are in the buffer: a
+// copy of the reader reads ahead to the last one, and adds up their way, without touching the source.
 bool lyr_next(lyr_reader* reader, lyr_operation* operation);
 // Goes by the index: the next operation will be LYR_LAYER of this layer (from 0). The end is then
 // checked without counts and index.
 bool lyr_seek_layer(lyr_reader* reader, uint32_t index);
-// Behind a piece of a wipe: all its pieces are given out again. So the whole way can be added up, and
-// with it how fast the filament is to be drawn back, before the first piece is carried out.
-void lyr_wipe_again(lyr_reader* reader);
 // The check of blocks. `before`: that of the bytes in front of these; 0: there are none.
 uint32_t lyr_crc32c(const uint8_t* bytes, size_t count, uint32_t before);
 

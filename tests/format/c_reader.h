@@ -47,11 +47,14 @@ struct CReader {
     lyr_operation operation;
 };
 
-inline Point point_of(const lyr_point& p) { return {p.x, p.y, p.z}; }
+inline Point point_of(const lyr_point& p) {
+    return {p.x, p.y, p.z};
+}
 
 inline PathStyle style_of(const lyr_style& s) {
-    return {static_cast<Role>(s.role),  s.width / scale::width, s.height / scale::width,
-            s.flow / scale::flow, s.speed / scale::speed, s.acceleration / scale::acceleration};
+    return {static_cast<Role>(s.role), s.width / scale::width,
+            s.height / scale::width,   s.flow / scale::flow,
+            s.speed / scale::speed,    s.acceleration / scale::acceleration};
 }
 
 // What the C++ reader gives out for it. `left_mm` of a wipe is taken over: C leaves that to its caller.
@@ -154,7 +157,9 @@ inline std::string difference(std::span<const std::byte> bytes, Result<Reader> r
     Memory memory{bytes, 0, most};
     CReader c(memory);
     const bool opened = c.open();
-    if (opened != reader.ok()) return opened ? "only C opens it" : "C does not open it: " + std::string(c.reader.error.text);
+    if (opened != reader.ok())
+        return opened ? "only C opens it"
+                      : "C does not open it: " + std::string(c.reader.error.text);
     std::uint64_t count = 0;
     while (opened) {
         const Operation* operation = reader->read();
@@ -162,7 +167,8 @@ inline std::string difference(std::span<const std::byte> bytes, Result<Reader> r
         const std::string place = "operation " + std::to_string(count++) + ": ";
         if (given != (operation != nullptr)) return place + (given ? "only C" : "only C++");
         if (!given) break;
-        if (!(operation_of(c.reader, c.operation, *operation) == *operation)) return place + "another";
+        if (!(operation_of(c.reader, c.operation, *operation) == *operation))
+            return place + "another";
         if (c.operation.offset != reader->position().offset) return place + "another byte";
         if (!(style_of(c.reader.style) == reader->path())) return place + "another style";
         if (c.operation.kind == LYR_LAYER &&
@@ -170,7 +176,9 @@ inline std::string difference(std::span<const std::byte> bytes, Result<Reader> r
             return place + "another layer";
     }
     const lyr_error& e = c.reader.error;
-    const Diagnostic* error = !reader.ok() ? &reader.error() : reader->error() ? &*reader->error() : nullptr;
+    const Diagnostic* error = !reader.ok()      ? &reader.error()
+                              : reader->error() ? &*reader->error()
+                                                : nullptr;
     if (!error) return e.status == LYR_END ? "" : "only C refuses it: " + std::string(e.text);
     const std::string& message = error->message;
     const std::string both = message + " | C: " + e.text + " at byte " + std::to_string(e.offset);
@@ -184,7 +192,8 @@ inline std::string difference(std::span<const std::byte> bytes, Result<Reader> r
         return "another reason: " + both;
     if (number_behind(message, "the last whole layer is ") != e.whole_layers)
         return "another last layer: " + both;
-    if (number_behind(message, " in layer ") + number_behind(message, " behind layer ") != e.layer ||
+    if (number_behind(message, " in layer ") + number_behind(message, " behind layer ") !=
+            e.layer ||
         number_behind(message, ", chunk ") != e.chunk)
         return "another layer or chunk: " + both;
     return "";

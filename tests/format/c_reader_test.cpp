@@ -1,12 +1,14 @@
 // The C reader: what it gives out and refuses is what the C++ reader does.
 
+#include "c_reader.h"
+
 #include <doctest/doctest.h>
 #include <sys/mman.h>
 
-#include <filesystem>
+#include <cmath>
+#include <numeric>
 #include <random>
 
-#include "c_reader.h"
 #include "files.h"
 #include "sample.h"
 #include "small_file.h"
@@ -19,8 +21,7 @@ namespace {
 
 std::string difference(const FileBytes& bytes, std::size_t most = SIZE_MAX) {
     const int descriptor = ::memfd_create("lyr", 0);
-    REQUIRE(::write(descriptor, bytes.data(), bytes.size()) ==
-            static_cast<ssize_t>(bytes.size()));
+    REQUIRE(::write(descriptor, bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size()));
     REQUIRE(::lseek(descriptor, 0, SEEK_SET) == 0);
     const ReadOptions options{.keep_thumbnails = false, .keep_configuration = false};
     return test::difference(bytes, Reader::from_descriptor(descriptor, "memory", options), most);
@@ -122,8 +123,8 @@ TEST_CASE("C reader 3 and 4: the same verdict on random operations") {
     const auto pick = [&](int count) {
         return std::uniform_int_distribution<int>(0, count - 1)(random);
     };
-    const std::vector<int> codes{0x00, 0x1f, 0x20, 0x33, 0x40, 0x41, 0x42, 0x45, 0x46, 0x47,
-                                 0x50, 0x51, 0x54, 0x57, 0x58, 0x5b, 0xf0, 0xf3};
+    const std::vector<int> codes{0x00, 0x1f, 0x20, 0x33, 0x40, 0x41, 0x42, 0x45, 0x46,
+                                 0x47, 0x50, 0x51, 0x54, 0x57, 0x58, 0x5b, 0xf0, 0xf3};
     for (int i = 0; i < 20000; ++i) {
         FileBytes raw;
         for (const int byte : {0x50, 1, 0, 0x46, 0x80, 0x80, 0x80, 0x80, 8, 0, 0, 2})
@@ -137,4 +138,155 @@ TEST_CASE("C reader 3 and 4: the same verdict on random operations") {
         INFO("turn " << i);
         REQUIRE(difference(test::raw_file(raw, 3)) == "");
     }
+}
+
+TEST_CASE("reader: a link of no length leaves the next gap of its row a travel") {
+    FileBytes raw;
+    for (const int byte : {0x50, 0, 0, 0x46, 0x80, 0x80, 0x80, 0x80, 8, 0, 0, 2})
+        raw.push_back(static_cast<std::byte>(byte));
+    // One row of two intervals, linked, that begins where the head is: u = 0, 5, 10, 15.
+    for (const int byte : {0x47, 0, 0, 1, 5, 1, 0, 10, 10, 10})
+        raw.push_back(static_cast<std::byte>(byte));
+    const FileBytes file = test::raw_file(raw, 3);
+    CHECK(difference(file) == "");
+    const test::Reading reading = test::read_bytes(file);
+    REQUIRE(!reading.error);
+    REQUIRE(reading.given.size() == 6);
+    CHECK(reading.given[3].operation == Operation(Line{{0, 0, 0}, {5, 0, 0}, true}));
+    CHECK(reading.given[4].operation == Operation(Travel{{5, 0, 0}, {10, 0, 0}, true}));
+    CHECK(reading.given[5].operation == Operation(Line{{10, 0, 0}, {15, 0, 0}, true}));
+}
+
+TEST_CASE("reader: the widest arc is told from one that is wider by a quantum, however large") {
+    std::mt19937_64 random(9);
+    const auto verdict = [](std::int64_t dx, std::int64_t dy, std::int64_t sagitta) {
+        FileBytes raw{std::byte{0x50}, std::byte{0}, std::byte{0}};
+        const std::int64_t x = dx / 2, y = dy / 2;
+        for (const std::int64_t value : {std::int64_t{0x40}, std::int64_t{0x10}}) {
+            raw.push_back(static_cast<std::byte>(value));
+            put_signed(raw, value == 0x40 ? -x : dx);
+            put_signed(raw, value == 0x40 ? -y : dy);
+        }
+        put_signed(raw, sagitta);
+        const FileBytes file = test::raw_file(raw, 3);
+        CHECK(difference(file) == "");
+        return !test::read_bytes(file).error;
+    };
+    for (int i = 0; i < 300; ++i) {
+        const auto limit = static_cast<std::int64_t>(random() >> (random() % 30 + 33));
+        const std::int64_t dx = 2 * limit, dy = i % 3 == 0 ? 0 : 2 * (limit / (i % 7 + 1));
+        if (dx == 0) continue;
+        const long double most =
+            1.25L * std::hypot(static_cast<long double>(dx), static_cast<long double>(dy));
+        const auto widest = static_cast<std::int64_t>(std::floor(most));
+        INFO("chord " << dx << ", " << dy << " widest " << widest);
+        CHECK(verdict(dx, dy, i % 2 ? widest : -widest));
+        CHECK_FALSE(verdict(dx, dy, i % 2 ? widest + 1 : -widest - 1));
+    }
+    for (const std::int64_t sagitta : {INT64_MAX, INT64_MIN, std::int64_t{1} << 35})
+        CHECK_FALSE(verdict(100, 100, sagitta));
+}
+
+TEST_CASE(
+    "C reader 3: a buffer that a block does not fit is said so, a smaller one does for the rest") {
+    const FileBytes file = test::small_file();
+    std::size_t longest = 0;
+    for (const test::Block& block : test::split(file))
+        if (block.type < 0x80)
+            longest = std::max(longest, block.payload.size() + block_frame_bytes);
+    for (const std::size_t size : {std::size_t{16}, longest - 1, longest, longest + 100}) {
+        test::Memory memory{file};
+        test::CReader c(memory, size);
+        c.open();
+        while (lyr_next(&c.reader, &c.operation)) {
+        }
+        CHECK(c.reader.error.status == (size < longest ? LYR_TOO_LONG : LYR_END));
+    }
+}
+
+TEST_CASE("C reader: it starts at any layer, and goes back") {
+    const FileBytes file = random_file(3);
+    test::Memory memory{file};
+    test::CReader c(memory);
+    REQUIRE(c.open());
+    std::vector<std::uint64_t> operations(3);
+    while (lyr_next(&c.reader, &c.operation)) ++operations[c.reader.layer.index];
+    for (const std::uint32_t layer : {2u, 0u, 1u}) {
+        REQUIRE(lyr_seek_layer(&c.reader, layer));
+        CHECK(lyr_next(&c.reader, &c.operation));
+        CHECK(c.operation.kind == LYR_LAYER);
+        CHECK(c.operation.number == layer);
+        std::uint64_t left = 1;
+        while (lyr_next(&c.reader, &c.operation)) ++left;
+        CHECK(c.reader.error.status == LYR_END);
+        CHECK(left ==
+              std::accumulate(operations.begin() + layer, operations.end(), std::uint64_t{0}));
+    }
+    CHECK_FALSE(lyr_seek_layer(&c.reader, 3));
+    CHECK(c.reader.error.status == LYR_NO_SUCH_LAYER);
+    CHECK(lyr_seek_layer(&c.reader, 0));
+    memory.bytes = memory.bytes.first(file.size() - 1);
+    c.reader.source.size = file.size() - 1;
+    CHECK_FALSE(lyr_seek_layer(&c.reader, 0));
+    CHECK(c.reader.error.status == LYR_CUT_SHORT);
+}
+
+TEST_CASE("C reader: a copy reads ahead to the end of a wipe without touching the source") {
+    const FileBytes file = random_file(6);
+    test::Memory memory{file};
+    test::CReader c(memory);
+    REQUIRE(c.open());
+    int wipes = 0;
+    while (lyr_next(&c.reader, &c.operation)) {
+        if (c.operation.kind != LYR_WIPE) continue;
+        ++wipes;
+        const std::size_t at = memory.at;
+        lyr_reader ahead = c.reader;
+        lyr_operation last = c.operation;
+        for (std::uint32_t left = c.operation.number; left > 1; --left) {
+            REQUIRE(lyr_next(&ahead, &last));
+            CHECK(last.kind == LYR_WIPE);
+            CHECK(last.number == left - 1);
+        }
+        CHECK(last.number == 1);
+        CHECK(memory.at == at);
+    }
+    CHECK(wipes > 50);
+}
+
+TEST_CASE("C reader: metadata, configuration and thumbnails are handed on") {
+    struct Kept {
+        test::Memory memory;
+        std::string metadata;
+        std::vector<std::pair<int, std::string>> extras;
+        bool open = false;
+    };
+    const FileBytes file = test::small_file();
+    Kept kept{{file}, "", {}};
+    lyr_source source = kept.memory.source();
+    source.user = &kept;
+    source.read = [](void* user, std::uint8_t* out, std::uint32_t count) {
+        return test::Memory::read(&static_cast<Kept*>(user)->memory, out, std::min(count, 50u));
+    };
+    source.metadata = [](void* user, const char* key, std::size_t key_size, const char* value,
+                         std::size_t size) {
+        static_cast<Kept*>(user)->metadata +=
+            std::string(key, key_size) + ':' + std::string(value, size) + '\n';
+    };
+    source.extra = [](void* user, std::uint8_t type, const std::uint8_t* bytes, std::size_t count,
+                      std::size_t left) {
+        auto& out = *static_cast<Kept*>(user);
+        if (!out.open) out.extras.push_back({type, ""});
+        if (count > 0) out.extras.back().second.append(reinterpret_cast<const char*>(bytes), count);
+        out.open = left > 0;
+    };
+    std::vector<std::byte> buffer(400);
+    lyr_reader reader;
+    REQUIRE(lyr_open(&reader, &source, buffer.data(), buffer.size()));
+    CHECK(kept.metadata.starts_with("source:part.step\n"));
+    CHECK(kept.metadata.find("layers:3\n") != std::string::npos);
+    REQUIRE(kept.extras.size() == 2);
+    CHECK(kept.extras[0] == std::pair<int, std::string>(0x82, "layer.height = 0.2\n"));
+    CHECK(kept.extras[1].first == 0x81);
+    CHECK(kept.extras[1].second.size() == 11);
 }
