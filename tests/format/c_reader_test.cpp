@@ -3,7 +3,6 @@
 #include "c_reader.h"
 
 #include <doctest/doctest.h>
-#include <sys/mman.h>
 
 #include <cmath>
 #include <numeric>
@@ -20,11 +19,8 @@ using test::FileBytes;
 namespace {
 
 std::string difference(const FileBytes& bytes, std::size_t most = SIZE_MAX) {
-    const int descriptor = ::memfd_create("lyr", 0);
-    REQUIRE(::write(descriptor, bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size()));
-    REQUIRE(::lseek(descriptor, 0, SEEK_SET) == 0);
     const ReadOptions options{.keep_thumbnails = false, .keep_configuration = false};
-    return test::difference(bytes, Reader::from_descriptor(descriptor, "memory", options), most);
+    return test::difference(bytes, test::open_bytes(bytes, options), most);
 }
 
 // Of random calls to the encoder: every operation, several quanta and layers of several chunks.
