@@ -54,7 +54,7 @@ inline constexpr double widest_sagitta_per_chord = (1 + std::numbers::sqrt2) / 2
 // the low 64 do.
 inline bool is_arc(const Point& from, const Point& to, std::int64_t sagitta) {
     constexpr std::int64_t largest_sagitta = std::int64_t{1} << 33;
-    if (sagitta == 0 || sagitta < -largest_sagitta || sagitta > largest_sagitta) return false;
+    if (sagitta < -largest_sagitta || sagitta > largest_sagitta) return false;
     const auto scaled = [](std::uint64_t factor, std::int64_t value) {
         return factor * static_cast<std::uint64_t>(value < 0 ? -value : value);
     };

@@ -9,9 +9,10 @@ enum { no_hatch, hatch_row, hatch_start, hatch_end };
 enum { metadata_block = 1, layer_block, chunk_block, index_block, end_block };
 enum { longest_payload = 65528, frame_bytes = 8, end_bytes = 36, most_predicted = 32 };
 
-static const int64_t coordinate_limit = 0x7fffffff, one = INT64_C(1) << 30;
+static const int64_t coordinate_limit = 0x7fffffff, unit = INT64_C(1) << 30;
 static const int64_t hatch_limit = INT64_C(3) << 30, offset_limit = INT64_C(3) << 54;
 static const int64_t first_row_limit = INT64_C(1) << 32, row_limit = INT64_C(1) << 34;
+static const int64_t farthest_beside = INT64_C(1) << 36;  // 1/16 quantum
 
 // In the block at hand, or within it where the caller says so.
 static bool fail(lyr_reader* r, lyr_status status, const char* text) {
@@ -80,10 +81,10 @@ static uint64_t get_varint(lyr_reader* r) {
     return cut_off(r);
 }
 
-static int64_t get_signed(lyr_reader* r) {
-    const uint64_t value = get_varint(r);
+static int64_t unzigzag(uint64_t value) {
     return value & 1 ? -1 - (int64_t)(value >> 1) : (int64_t)(value >> 1);
 }
+static int64_t get_signed(lyr_reader* r) { return unzigzag(get_varint(r)); }
 
 static uint32_t get_setting(lyr_reader* r) {
     const uint64_t value = get_varint(r);
@@ -367,41 +368,45 @@ static bool read_block(lyr_reader* r) {
 
 static bool same(lyr_point a, lyr_point b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
-// The head, which a wipe leads away from where the next operation counts from.
-static lyr_point head(const lyr_decoder* d) { return d->wiped ? d->wiped_to : d->head; }
-
 static bool may_extrude(lyr_reader* r) {
-    if (!r->decoder.has_path) return wrong(r, "extrusion before a path begins");
-    return !r->decoder.wiped || wrong(r, "extrusion does not begin where a wipe has ended");
+    return r->decoder.has_path || wrong(r, "extrusion before a path begins");
 }
 
 static bool move(lyr_reader* r, lyr_operation* o, lyr_kind kind) {
     o->kind = kind;
-    o->from = head(&r->decoder);
+    o->from = r->decoder.head;
     r->decoder.head = o->to;
-    r->decoder.wiped = false;
     return kind == LYR_ARC || kind == LYR_CIRCLE || !same(o->from, o->to);
+}
+
+// Lines and arcs that packed runs may refer to.
+static bool remember(lyr_reader* r, const lyr_operation* o) {
+    r->history[r->decoder.motions++ % LYR_HISTORY] =
+        (lyr_motion){o->from.x, o->from.y, o->to.x, o->to.y, o->sagitta};
+    return true;
 }
 
 // |s| <= 1.25 chords: (4 s)^2 <= (5 dx)^2 + (5 dy)^2. The squares have up to 74 bits; without the low
 // 16 of them they decide all but what is so near that the low 64 do.
-static bool is_arc(lyr_reader* r, int64_t sagitta, lyr_point from, lyr_point to) {
+static bool is_arc(int64_t sagitta, lyr_point from, lyr_point to) {
     const uint64_t x = 5 * size_of((int64_t)to.x - from.x), y = 5 * size_of((int64_t)to.y - from.y);
     const uint64_t s = 4 * size_of(sagitta), over = s * s - x * x - y * y;
     const int64_t coarse =
         (int64_t)((s >> 8) * (s >> 8)) - (int64_t)((x >> 8) * (x >> 8) + (y >> 8) * (y >> 8));
-    const bool flat = beyond(coarse, INT64_C(1) << 40) ? coarse < 0 : over == 0 || over >> 63;
-    return (flat && sagitta != 0 && !beyond(sagitta, 2 * hatch_limit)) ||
-           wrong(r, "an arc has no or too large a sagitta");
+    if (beyond(sagitta, 2 * hatch_limit)) return false;
+    return beyond(coarse, INT64_C(1) << 40) ? coarse < 0 : over == 0 || over >> 63;
 }
 
 static bool decode_run(lyr_reader* r, lyr_operation* o) {
     lyr_decoder* d = &r->decoder;
+    const bool arcs = d->run_code & 0x10, climbs = d->run_code & 0x20;
     --d->run_left;
-    o->to = get_point(r, d->head, d->run_code >= 0x20);
-    if ((d->run_code & 0x10) == 0) return may_extrude(r) && move(r, o, LYR_LINE);
-    o->sagitta = get_signed(r);
-    return may_extrude(r) && is_arc(r, o->sagitta, d->head, o->to) && move(r, o, LYR_ARC);
+    o->to = get_point(r, d->head, climbs);
+    if (arcs) o->sagitta = get_signed(r);
+    if (!may_extrude(r)) return false;
+    if (arcs && (o->sagitta == 0 || !is_arc(o->sagitta, d->head, o->to)))
+        return wrong(r, "an arc has no or too large a sagitta");
+    return move(r, o, arcs ? LYR_ARC : LYR_LINE) && (climbs || remember(r, o));
 }
 
 static bool decode_circle(lyr_reader* r, lyr_operation* o, uint8_t code) {
@@ -416,39 +421,190 @@ static bool decode_circle(lyr_reader* r, lyr_operation* o, uint8_t code) {
 
 static bool decode_wipe_piece(lyr_reader* r, lyr_operation* o) {
     lyr_decoder* d = &r->decoder;
-    d->wipes = r->cursor != d->wipe_end;
-    if (!d->wipes) return false;
-    o->kind = LYR_WIPE;
-    o->from = head(d);
-    o->to = get_point(r, o->from, false);
+    --d->pieces_left;
+    o->to = get_point(r, d->head, false);
     o->sagitta = get_signed(r);
     o->value = d->wipe_depth;
     o->number = d->wipe_left;
-    d->wiped_to = o->to;
-    d->wiped = !same(o->to, d->head);
-    return !same(o->from, o->to) && d->wipe_left-- > 0;
+    return move(r, o, LYR_WIPE) && d->wipe_left-- > 0;
+}
+
+void lyr_wipe_again(lyr_reader* r) {
+    lyr_decoder* d = &r->decoder;
+    r->cursor = d->wipe_at;
+    d->head = d->wipe_from;
+    d->pieces_left = d->pieces;
+    d->wipe_left = d->wipe_moves;
 }
 
 // Checked and counted as a whole first.
 static bool decode_wipe(lyr_reader* r, lyr_operation* o) {
     lyr_decoder* d = &r->decoder;
-    const uint64_t bytes = get_varint(r);
-    if (bytes > left_of(r)) return wrong(r, "a wipe is cut short");
-    d->wipe_end = r->cursor + bytes;
     d->wipe_depth = get_setting(r);
-    d->wipe_left = 0;
-    const uint8_t* const pieces = r->cursor;
-    for (lyr_point from = head(d); r->error.status == LYR_OK && r->cursor < d->wipe_end;) {
+    d->pieces = get_varint(r);
+    if (d->pieces > left_of(r) / 3) wrong(r, "a wipe is cut short");
+    d->wipe_at = r->cursor;
+    d->wipe_from = d->head;
+    d->wipe_moves = 0;
+    lyr_point from = d->head;
+    for (uint64_t i = 0; i < d->pieces && r->error.status == LYR_OK; ++i) {
         const lyr_point to = get_point(r, from, false);
         const int64_t sagitta = get_signed(r);
-        if (sagitta != 0 && !is_arc(r, sagitta, from, to)) return false;
-        d->wipe_left += !same(from, to);
+        if (!is_arc(sagitta, from, to)) wrong(r, "an arc has no or too large a sagitta");
+        d->wipe_moves += !same(from, to);
         from = to;
     }
-    if (r->cursor != d->wipe_end) wrong(r, "a wipe is cut short");
     if (r->error.status != LYR_OK) return false;
-    r->cursor = pieces;
-    return decode_wipe_piece(r, o);
+    lyr_wipe_again(r);
+    return d->pieces > 0 && decode_wipe_piece(r, o);
+}
+
+// Packed runs. The specification gives the order of operations: each must be rounded by itself.
+
+static double square_root(double value) {
+    union {
+        double value;
+        uint64_t bits;
+    } number = {value}, scale;
+    if (!(value > 0)) return 0;
+    // value = mantissa x 2^exponent; then the root of mantissa x 2^54, two bits a step, has a bit more
+    // than a double, which rounds it.
+    int64_t exponent = (int64_t)(number.bits >> 52) - 1075;
+    uint64_t mantissa = (number.bits & (((uint64_t)1 << 52) - 1)) | (uint64_t)1 << 52;
+    if (exponent % 2 != 0) mantissa <<= 1, --exponent;
+    uint64_t root = 0, rest = 0;
+    for (int i = 53; i >= 0; --i) {
+        rest = rest << 2 | (i >= 27 ? mantissa >> (2 * i - 54) & 3 : 0);
+        const uint64_t next = root << 2 | 1, fits = rest >= next;
+        rest -= fits ? next : 0;
+        root = root << 1 | fits;
+    }
+    scale.bits = (uint64_t)(exponent / 2 - 26 + 1023) << 52;
+    return (double)((root + 1) >> 1) * scale.value;
+}
+
+static int64_t nearest(double value) {
+    static const double limit = 1099511627776.0, whole = 6755399441055744.0;  // 2^40, 1.5 x 2^52
+    return value > -limit && value < limit ? (int64_t)((value + whole) - whole) : 0;
+}
+
+static lyr_course course_of(const lyr_motion* m) {
+    const double x = (double)m->to_x - m->from_x, y = (double)m->to_y - m->from_y;
+    const double s = (double)m->sagitta, square = x * x + y * y, root = square_root(square);
+    const double rise = 4 * s * s, across = 4 * s * root, along = square - rise;
+    const double sum = square + rise;
+    return (lyr_course){x * along + y * across,
+                        y * along - x * across,
+                        x * along - y * across,
+                        y * along + x * across,
+                        root * sum,
+                        8 * s / sum};
+}
+
+static unsigned get_bit(lyr_reader* r) {
+    lyr_decoder* d = &r->decoder;
+    if (r->cursor == r->payload_end) return (unsigned)cut_off(r);
+    const unsigned bit = *r->cursor >> d->bit & 1;
+    d->bit = (uint8_t)((d->bit + 1) % 8);
+    r->cursor += d->bit == 0;
+    return bit;
+}
+
+static int64_t get_bits(lyr_reader* r, unsigned order) {
+    uint64_t zeros = 0, low = 0;
+    while (r->error.status == LYR_OK && get_bit(r) == 0)
+        if (++zeros > 40) cut_off(r);
+    for (unsigned i = 0; i < zeros + order && r->error.status == LYR_OK; ++i)
+        low |= (uint64_t)get_bit(r) << i;
+    return unzigzag(low + ((((uint64_t)1 << zeros) - 1) << order));
+}
+
+// The sagitta that goes on smoothly; the chord's length is kept for the next one.
+static int64_t smooth_sagitta(lyr_decoder* d, const lyr_motion* last, double x, double y) {
+    const double x0 = (double)last->to_x - last->from_x, y0 = (double)last->to_y - last->from_y;
+    const double c0 = d->length, c = d->length = square_root(x * x + y * y);
+    const double along = x0 * x + y0 * y, across = x0 * y - y0 * x;
+    const double turn = c0 * c + along, rise = 2 * (double)last->sagitta;
+    const double e = c * (across * c0 - rise * turn) / (2 * (c0 * turn + across * rise));
+    return 4 * e > c || -4 * e > c ? 0 : nearest(e);
+}
+
+// What the next motion is expected to be, beside one that was.
+static void expect_beside(lyr_reader* r, int64_t* x, int64_t* y, int64_t* sagitta) {
+    lyr_decoder* d = &r->decoder;
+    const lyr_motion *old = &r->history[d->beside++ % LYR_HISTORY],
+                     *next = &r->history[d->beside % LYR_HISTORY];
+    const lyr_course now = d->course;
+    d->course = course_of(next);
+    const bool joined = next->from_x == old->to_x && next->from_y == old->to_y;
+    double n_x = now.end_x, n_y = now.end_y, size = now.size;
+    if (joined) n_x = d->course.start_x, n_y = d->course.start_y, size = d->course.size;
+    double cosine = now.end_x * n_x + now.end_y * n_y, one = now.size * size;
+    if (cosine < -0.5 * one) {
+        n_x = now.end_x, n_y = now.end_y, size = now.size;
+        cosine = one = now.size * now.size;
+    }
+    const double distance = (double)d->distance / 16, reach = distance / (one + cosine);
+    *x = nearest(old->to_x - reach * (now.end_y * size + n_y * now.size));
+    *y = nearest(old->to_y + reach * (now.end_x * size + n_x * now.size));
+    *sagitta = nearest((double)old->sagitta * (1 - distance * now.curvature));
+}
+
+static bool decode_packed(lyr_reader* r, lyr_operation* o) {
+    lyr_decoder* d = &r->decoder;
+    int64_t x = 0, y = 0, sagitta = 0;
+    const int64_t dx = get_bits(r, d->orders & 15), dy = get_bits(r, d->orders & 15);
+    const int64_t ds = get_bits(r, d->orders >> 4);
+    if (--d->packed_left == 0 && d->bit != 0) d->bit = 0, ++r->cursor;
+    if (r->error.status != LYR_OK) return false;
+    if (d->parallel) {
+        expect_beside(r, &x, &y, &sagitta);
+    } else {
+        x = d->head.x, y = d->head.y;
+        const lyr_motion* last = &r->history[(d->motions - 1) % LYR_HISTORY];
+        if (d->follows)
+            sagitta = smooth_sagitta(d, last, (double)dx, (double)dy);
+        else
+            d->length = square_root((double)dx * (double)dx + (double)dy * (double)dy);
+        d->follows = true;
+    }
+    o->to = (lyr_point){coordinate(r, x + dx), coordinate(r, y + dy), d->head.z};
+    o->sagitta = sagitta + ds;
+    if (same(o->to, d->head)) return wrong(r, "a motion of a packed run has no length");
+    if (!is_arc(o->sagitta, d->head, o->to))
+        return wrong(r, "an arc has no or too large a sagitta");
+    return move(r, o, o->sagitta == 0 ? LYR_LINE : LYR_ARC) && remember(r, o);
+}
+
+static bool begin_packed(lyr_reader* r, lyr_operation* o, bool parallel) {
+    lyr_decoder* d = &r->decoder;
+    d->parallel = parallel;
+    if (parallel) {
+        const int64_t back = get_signed(r), distance = get_signed(r);
+        if (!beyond(back, LYR_HISTORY)) d->back += back;
+        if (!beyond(distance, 2 * farthest_beside)) d->distance += distance;
+        const uint64_t kept = d->motions < LYR_HISTORY ? d->motions : LYR_HISTORY;
+        if (beyond(back, LYR_HISTORY) || beyond(distance, 2 * farthest_beside) || d->back < 2 ||
+            d->back > (int64_t)kept || beyond(d->distance, farthest_beside))
+            return wrong(r, "a run is parallel to what is out of reach");
+        d->beside = d->motions - (uint64_t)d->back;
+        d->course = course_of(&r->history[d->beside % LYR_HISTORY]);
+    } else if (d->motions > 0) {
+        const lyr_motion* last = &r->history[(d->motions - 1) % LYR_HISTORY];
+        const double x = (double)last->to_x - last->from_x, y = (double)last->to_y - last->from_y;
+        d->follows = last->to_x == d->head.x && last->to_y == d->head.y;
+        d->length = square_root(x * x + y * y);
+    } else {
+        d->follows = false;
+    }
+    d->packed_left = get_varint(r);
+    d->orders = get_byte(r);
+    if (!may_extrude(r)) return false;
+    // Each motion takes three bits at least.
+    if (d->packed_left == 0 || d->packed_left > left_of(r) * 8 / 3)
+        return wrong(r, "a packed run has no motions, or is cut short");
+    r->operations_left -= d->packed_left - 1;
+    return decode_packed(r, o);
 }
 
 // Hatches.
@@ -456,8 +612,8 @@ static bool decode_wipe(lyr_reader* r, lyr_operation* o) {
 static bool decode_grid(lyr_reader* r) {
     const int64_t a = get_signed(r), b = get_signed(r), offset = get_signed(r);
     r->grid = (lyr_grid){a, b, offset, get_signed(r)};
-    r->decoder.has_grid = !beyond(a, one) && !beyond(b, one) && !beyond(offset, offset_limit) &&
-                          !beyond(a * a + b * b - one * one, 2 * one) &&
+    r->decoder.has_grid = !beyond(a, unit) && !beyond(b, unit) && !beyond(offset, offset_limit) &&
+                          !beyond(a * a + b * b - unit * unit, 2 * unit) &&
                           !beyond(r->grid.pitch, offset_limit);
     return r->decoder.has_grid ? false : wrong(r, "a grid is out of range");
 }
@@ -611,8 +767,9 @@ static bool decode(lyr_reader* r, lyr_operation* o) {
     if (code <= 0x45) return decode_circle(r, o, code);
     if (code == 0x46) return decode_grid(r);
     if (code == LYR_HATCH) return decode_hatch(r, o);
+    if (code == 0x48 || code == 0x49) return begin_packed(r, o, code == 0x49);
     if (code == LYR_WIPE) return decode_wipe(r, o);
-    if (code < LYR_WIPE) return decode_setting(r, o, code);
+    if (code < 0xf0) return decode_setting(r, o, code);
     const uint64_t bytes = get_varint(r);
     if (bytes > left_of(r)) return cut_off(r);
     r->cursor += bytes;
@@ -628,8 +785,10 @@ static bool next_of_chunk(lyr_reader* r, lyr_operation* o) {
             given = decode_run(r, o);
         } else if (r->decoder.stage != no_hatch) {
             given = decode_hatch_step(r, o);
-        } else if (r->decoder.wipes) {
+        } else if (r->decoder.pieces_left > 0) {
             given = decode_wipe_piece(r, o);
+        } else if (r->decoder.packed_left > 0) {
+            given = decode_packed(r, o);
         } else if (r->cursor != r->payload_end) {
             given = decode(r, o);
         } else {

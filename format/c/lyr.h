@@ -1,5 +1,6 @@
-// Reads a .lyr file in C99 with nothing but a compiler: no library, no heap, no floating point. Made
-// for microcontrollers; docs/lyr-format.md gives the format, and an example of use.
+// Reads a .lyr file in C99 with nothing but a compiler: no library, no heap. Made for microcontrollers;
+// docs/lyr-format.md gives the format, docs/c-reader.md an example. Packed runs need doubles of IEEE 754
+// that are rounded by each operation: build with -ffp-contract=off where the processor fuses them.
 //
 // Contract
 //  1. No operation is given out before the CRC of its chunk was found right, nor a layer's state
@@ -93,6 +94,7 @@ typedef enum lyr_kind {
     LYR_TRAVEL = 0x40,        // without extruding
     LYR_CIRCLE = 0x42,        // a turn about center_x, center_y; `to` is off `from` in z at most
     LYR_HATCH = 0x47,         // a run begins; its lines and travels follow
+    LYR_WIPE = 0x4a,          // a piece: sagitta (0: a line); value: depth, um; number: pieces left
     LYR_PATH = 0x50,          // the style from here on; the next three change it
     LYR_WIDTH = 0x51,         // value: 0.1 um
     LYR_SPEED = 0x52,         // value: 0.01 mm/s
@@ -106,9 +108,7 @@ typedef enum lyr_kind {
     LYR_TOOL = 0x5a,                 // value
     LYR_PAUSE = 0x5b,                // value: reason, 0 or 1
     LYR_OBJECT = 0x5c,               // value
-    LYR_WIPE =
-        0xf0,  // a piece: sagitta (0: a line); value: depth, um; number: pieces left, with it
-    LYR_LAYER = 0x100,  // go to `to`; number; reader.layer has the rest
+    LYR_LAYER = 0x100,               // go to `to`; number; reader.layer has the rest
 } lyr_kind;
 
 typedef struct lyr_operation {
@@ -127,14 +127,25 @@ typedef struct lyr_grid {
 } lyr_grid;
 
 // The rest of a reader's state is its own affair.
+enum { LYR_HISTORY = 1024 };
+typedef struct lyr_motion {
+    int32_t from_x, from_y, to_x, to_y;
+    int64_t sagitta;
+} lyr_motion;
+typedef struct lyr_course {
+    double start_x, start_y, end_x, end_y, size, curvature;
+} lyr_course;
 typedef struct lyr_decoder {
-    lyr_point head, wiped_to;  // where operations begin; the head behind a wipe
-    bool has_path, has_grid, wiped, wipes, one_way, forward, linked, group_linked;
-    uint8_t run_code, run_left, stage, now, before, two_before, order;
-    const uint8_t* wipe_end;
-    uint32_t wipe_depth, wipe_left;
-    int64_t row, row_offset, ends[3][64], last;
+    lyr_point head, wipe_from;
+    bool has_path, has_grid, one_way, forward, linked, group_linked, parallel, follows;
+    uint8_t run_code, run_left, stage, now, before, two_before, order, orders, bit;
+    const uint8_t* wipe_at;
+    uint32_t wipe_depth, wipe_left, wipe_moves;
+    uint64_t pieces, pieces_left, packed_left, motions, beside;
+    int64_t back, distance, row, row_offset, ends[3][64], last;
     uint64_t rows_left, group_rows_left, intervals, ends_left, counts[3];
+    double length;
+    lyr_course course;
 } lyr_decoder;
 
 typedef struct lyr_reader {
@@ -152,16 +163,19 @@ typedef struct lyr_reader {
     uint64_t buffer_offset, offset, index_offset;
     uint64_t layer_operations, chunks, operations, operations_left;
     lyr_decoder decoder;
+    lyr_motion history[LYR_HISTORY];
 } lyr_reader;
 
 // Reads up to the first layer. The source is copied; the buffer is in use until the last call.
 bool lyr_open(lyr_reader* reader, const lyr_source* source, void* buffer, size_t size);
-// The next operation. False: the end (LYR_END) or an error. All pieces of a wipe are in the buffer: a
-// copy of the reader reads ahead to the last one, and adds up their way, without touching the source.
+// The next operation. False: the end (LYR_END) or an error.
 bool lyr_next(lyr_reader* reader, lyr_operation* operation);
 // Goes by the index: the next operation will be LYR_LAYER of this layer (from 0). The end is then
 // checked without counts and index.
 bool lyr_seek_layer(lyr_reader* reader, uint32_t index);
+// Behind a piece of a wipe: all its pieces are given out again. So the whole way can be added up, and
+// with it how fast the filament is to be drawn back, before the first piece is carried out.
+void lyr_wipe_again(lyr_reader* reader);
 // The check of blocks. `before`: that of the bytes in front of these; 0: there are none.
 uint32_t lyr_crc32c(const uint8_t* bytes, size_t count, uint32_t before);
 

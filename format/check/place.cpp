@@ -20,17 +20,17 @@ std::string of_layer(std::uint64_t layer) {
 
 }  // namespace
 
-Place behind(const Place& place, std::uint64_t chunks_of_layer,
-             std::optional<std::uint32_t> layers) {
+PrintPlace behind(const PrintPlace& place, std::uint64_t chunks_of_layer,
+                  std::optional<std::uint32_t> layers) {
     if (place == index_place) return end_place;
     if (place.layer == index_place.layer) return nothing_place;
     const bool more_chunks = !place.front && place.part < chunks_of_layer;
     if (more_chunks) return {place.layer, place.part + 1};
     const std::uint64_t next = place.front ? 0 : place.layer + 1;
-    return layers && next == *layers ? index_place : Place{next, 0};
+    return layers && next == *layers ? index_place : PrintPlace{next, 0};
 }
 
-std::string name_of(const Place& place) {
+std::string name_of(const PrintPlace& place) {
     if (place.front) return "the metadata";
     if (place == index_place) return "the index";
     if (place.layer == index_place.layer) return "the end block";
@@ -38,7 +38,8 @@ std::string name_of(const Place& place) {
     return "chunk " + std::to_string(place.part) + of_layer(place.layer);
 }
 
-std::string name_of_range(const Place& from, const Place& to, std::optional<std::uint32_t> layers) {
+std::string name_of_range(const PrintPlace& from, const PrintPlace& to,
+                          std::optional<std::uint32_t> layers) {
     if (!(from < to)) return "";
     if (from.front) return "the metadata is";
     if (from == index_place) return "the index is";

@@ -155,19 +155,19 @@ private:
     }
 
     // What stands where. Tells of what is lost in front of it; false: it is not after what was before.
-    bool arrive(const Piece& piece, const Place& place) {
+    bool arrive(const Piece& piece, const PrintPlace& place) {
         tell_losses(piece.begin, place);
         const bool in_order = !(place < due_);
         if (!in_order) find(piece.begin, piece.end, name_of(place) + " is out of place");
         return in_order;
     }
 
-    void expect_behind(const Place& place, std::uint64_t chunks_of_layer) {
+    void expect_behind(const PrintPlace& place, std::uint64_t chunks_of_layer) {
         due_ = behind(place, chunks_of_layer, out_.stated_layers);
         chunks_of_layer_ = chunks_of_layer;
     }
 
-    void tell_losses(std::uint64_t at, const Place& next) {
+    void tell_losses(std::uint64_t at, const PrintPlace& next) {
         // A layer whose own block is lost may have ended with any chunk.
         const bool may_have_ended = chunks_of_layer_ == unknown_chunks && due_.layer != next.layer;
         if (may_have_ended) due_ = behind(due_, 0, out_.stated_layers);
@@ -179,16 +179,16 @@ private:
     }
 
     // Each bad piece by what it was, if there are as many as places are missing.
-    void tell_bad(const Place& next, const std::string& lost) {
+    void tell_bad(const PrintPlace& next, const std::string& lost) {
         std::vector<std::string> names;
         const auto has_place = [](const Piece& bad) { return (bad.type & skippable_bit) == 0; };
         const auto most =
             static_cast<std::size_t>(std::count_if(bad_.begin(), bad_.end(), has_place));
-        Place place = due_;
+        PrintPlace place = due_;
         // Of a layer whose own block is lost: as many chunks as the layer before, if nothing tells.
         const auto follower = [&] {
             if (!place.front && place.layer == next.layer)
-                return Place{place.layer, place.part + 1};
+                return PrintPlace{place.layer, place.part + 1};
             return behind(place, chunks_of_layer_, out_.stated_layers);
         };
         for (; names.size() < most && place < next; place = follower())
@@ -251,7 +251,7 @@ private:
             return find(piece.begin, piece.end,
                         std::string("a layer's block makes no sense: ") + why);
         }
-        const Place place{record->layer.index, 0};
+        const PrintPlace place{record->layer.index, 0};
         if (!arrive(piece, place)) return close_layer(piece.begin);
         close_layer(piece.begin);
         offsets_.push_back(piece.begin);
@@ -287,7 +287,7 @@ private:
             if (open_) open_->sound = false;
             return find(piece.begin, piece.end, "a chunk has no head, or is too long");
         }
-        const Place place{layer, chunk + 1};
+        const PrintPlace place{layer, chunk + 1};
         const bool due = place == due_;
         const bool in_order = arrive(piece, place);
         ++out_.chunks;
@@ -306,7 +306,7 @@ private:
         open_->operations += operations;
     }
 
-    void decode(const Piece& piece, const Place& place, std::uint64_t begin) {
+    void decode(const Piece& piece, const PrintPlace& place, std::uint64_t begin) {
         Operation operation;
         ChunkDecoder& decoder = open_->decoder;
         ChunkDecoder::Step step = ChunkDecoder::Step::operation;
@@ -363,7 +363,7 @@ private:
         out_.cut_short = bad_.empty() || !is_framed(bad_.back());
         const std::string due = name_of(due_);
         if (!out_.cut_short) {
-            const Place reached = end_behind_bad();
+            const PrintPlace reached = end_behind_bad();
             tell_losses(out_.bytes, reached);
             out_.cut_short = !(reached == nothing_place);
             if (!out_.cut_short) return;
@@ -386,8 +386,8 @@ private:
     }
 
     // As far as the bad pieces reach if each was one block.
-    Place end_behind_bad() const {
-        Place place = due_;
+    PrintPlace end_behind_bad() const {
+        PrintPlace place = due_;
         for (std::size_t i = 0; i < bad_.size(); ++i)
             place = behind(place, chunks_of_layer_, out_.stated_layers);
         return place;
@@ -396,7 +396,7 @@ private:
     Bytes file_;
     Verification out_;
     std::vector<Piece> bad_;  // since the last right one
-    Place due_ = metadata_place;
+    PrintPlace due_ = metadata_place;
     std::uint64_t chunks_of_layer_ = 0;  // of the layer that is due or begun
     bool complete_ = true;               // nothing is lost so far
     bool ended_ = false;

@@ -16,6 +16,8 @@ using namespace lyr;
 using namespace lyr::format;
 using test::FileBytes;
 
+extern "C" double lyr_square_root(double value);
+
 namespace {
 
 std::string difference(const FileBytes& bytes, std::size_t most = SIZE_MAX) {
@@ -119,8 +121,8 @@ TEST_CASE("C reader 3 and 4: the same verdict on random operations") {
     const auto pick = [&](int count) {
         return std::uniform_int_distribution<int>(0, count - 1)(random);
     };
-    const std::vector<int> codes{0x00, 0x1f, 0x20, 0x33, 0x40, 0x41, 0x42, 0x45, 0x46,
-                                 0x47, 0x50, 0x51, 0x54, 0x57, 0x58, 0x5b, 0xf0, 0xf3};
+    const std::vector<int> codes{0x00, 0x1f, 0x20, 0x33, 0x40, 0x41, 0x42, 0x45, 0x46, 0x47,
+                                 0x48, 0x49, 0x4a, 0x50, 0x51, 0x54, 0x57, 0x58, 0x5b, 0xf3};
     for (int i = 0; i < 20000; ++i) {
         FileBytes raw;
         for (const int byte : {0x50, 1, 0, 0x46, 0x80, 0x80, 0x80, 0x80, 8, 0, 0, 2})
@@ -227,7 +229,7 @@ TEST_CASE("C reader: it starts at any layer, and goes back") {
     CHECK(c.reader.error.status == LYR_CUT_SHORT);
 }
 
-TEST_CASE("C reader: a copy reads ahead to the end of a wipe without touching the source") {
+TEST_CASE("C reader: a wipe is given out again without touching the source") {
     const FileBytes file = random_file(6);
     test::Memory memory{file};
     test::CReader c(memory);
@@ -237,14 +239,20 @@ TEST_CASE("C reader: a copy reads ahead to the end of a wipe without touching th
         if (c.operation.kind != LYR_WIPE) continue;
         ++wipes;
         const std::size_t at = memory.at;
-        lyr_reader ahead = c.reader;
-        lyr_operation last = c.operation;
-        for (std::uint32_t left = c.operation.number; left > 1; --left) {
-            REQUIRE(lyr_next(&ahead, &last));
-            CHECK(last.kind == LYR_WIPE);
-            CHECK(last.number == left - 1);
+        const std::uint32_t pieces = c.operation.number;
+        std::vector<std::uint64_t> offsets{c.operation.offset};
+        for (std::uint32_t left = pieces; left > 1; --left) {
+            REQUIRE(lyr_next(&c.reader, &c.operation));
+            CHECK(c.operation.kind == LYR_WIPE);
+            CHECK(c.operation.number == left - 1);
+            offsets.push_back(c.operation.offset);
         }
-        CHECK(last.number == 1);
+        lyr_wipe_again(&c.reader);
+        for (std::uint32_t i = 0; i < pieces; ++i) {
+            REQUIRE(lyr_next(&c.reader, &c.operation));
+            CHECK(c.operation.number == pieces - i);
+            if (i > 0) CHECK(c.operation.offset == offsets[i]);
+        }
         CHECK(memory.at == at);
     }
     CHECK(wipes > 50);
@@ -285,4 +293,28 @@ TEST_CASE("C reader: metadata, configuration and thumbnails are handed on") {
     CHECK(kept.extras[0] == std::pair<int, std::string>(0x82, "layer.height = 0.2\n"));
     CHECK(kept.extras[1].first == 0x81);
     CHECK(kept.extras[1].second.size() == 11);
+}
+
+TEST_CASE("C reader: its square root is rounded as IEEE 754 says") {
+    std::mt19937_64 random(1);
+    const auto check = [](double value) {
+        if (lyr_square_root(value) == std::sqrt(value)) return true;
+        INFO("of " << value);
+        CHECK(lyr_square_root(value) == std::sqrt(value));
+        return false;
+    };
+    CHECK(lyr_square_root(0) == 0);
+    for (int i = 0; i < 200000; ++i) {
+        const auto x =
+            static_cast<double>(static_cast<std::int64_t>(random() >> (1 + random() % 60)));
+        const auto y =
+            static_cast<double>(static_cast<std::int64_t>(random() >> (1 + random() % 60)));
+        REQUIRE(check(x));
+        REQUIRE(check(x * x + y * y));
+        // Squares and their neighbours: where rounding is hardest.
+        const double whole = static_cast<double>(random() >> 38), square = whole * whole;
+        REQUIRE(check(square));
+        REQUIRE(check(std::nextafter(square, 0)));
+        REQUIRE(check(std::nextafter(square, 1e300)));
+    }
 }

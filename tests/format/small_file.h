@@ -25,7 +25,7 @@ inline FileBytes small_file() {
     // The travel behind the retraction is a chunk boundary as good as any.
     EncodedLayer& two = layers[1];
     const std::size_t cut = 0x127 - 0x109;
-    two.chunks = {{0, cut, 5}, {cut, two.bytes.size(), 7}};
+    two.chunks = {{0, cut, 5}, {cut, two.bytes.size(), 18}};
     two.totals.chunks = 2;
     const std::string path = scratch("small");
     write_layers(path, quantum, metadata, layers);

@@ -37,7 +37,7 @@ TEST_CASE("verify: a whole file has no findings, and its counts are right") {
     const Verification v = verify(small_file());
     CHECK(v.findings.empty());
     CHECK(v.chunks == 4);
-    CHECK(v.operations == 36);
+    CHECK(v.operations == 69);
     CHECK(v.blocks == 12);
     CHECK(whole_layers(v) == Numbers{1, 2, 3});
     CHECK(v.whole_from_start == 3);
