@@ -18,7 +18,7 @@ CTEST   = ctest --output-on-failure -j $(JOBS)
 
 all: setup
 	cmake -S . -B $(BUILD) -DCMAKE_BUILD_TYPE=Release
-	cmake --build $(BUILD) -j $(JOBS) --target stepc lyrrun lyrview
+	cmake --build $(BUILD) -j $(JOBS) --target stepc lyrrun lyrview lyr_format_c
 
 setup:
 	@tools/setup

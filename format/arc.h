@@ -49,13 +49,24 @@ inline ArcShape arc_shape(const Arc& arc) {
 // The widest arc: tan(3/2 pi / 4) = 1 + sqrt(2). A wider one has ends so near each other that
 // rounding them would turn it about.
 inline constexpr double widest_sagitta_per_chord = (1 + std::numbers::sqrt2) / 2;
-// What is far beyond that (1.207) is no arc of a writer's.
-inline constexpr double most_sagitta_per_chord = 1.25;
-
+// What is far beyond that (1.207 chords) is no arc of a writer's: 4 |s| must be at most 5 chords. The
+// squares have up to 74 bits; without the low 16 of them they decide all but what is so near that
+// the low 64 do.
 inline bool is_arc(const Point& from, const Point& to, std::int64_t sagitta) {
-    const auto dx = static_cast<double>(to.x - from.x), dy = static_cast<double>(to.y - from.y);
-    const auto rise = static_cast<double>(sagitta);
-    return rise * rise <= most_sagitta_per_chord * most_sagitta_per_chord * (dx * dx + dy * dy);
+    constexpr std::int64_t largest_sagitta = std::int64_t{1} << 33;
+    if (sagitta < -largest_sagitta || sagitta > largest_sagitta) return false;
+    const auto scaled = [](std::uint64_t factor, std::int64_t value) {
+        return factor * static_cast<std::uint64_t>(value < 0 ? -value : value);
+    };
+    const std::uint64_t s = scaled(4, sagitta), dx = scaled(5, to.x - from.x),
+                        dy = scaled(5, to.y - from.y), over = s * s - dx * dx - dy * dy;
+    const auto coarse = [](std::uint64_t value) {
+        return static_cast<std::int64_t>((value >> 8) * (value >> 8));
+    };
+    constexpr std::int64_t near = std::int64_t{1} << 40;
+    const std::int64_t coarsely_over = coarse(s) - coarse(dx) - coarse(dy);
+    if (coarsely_over < -near || coarsely_over > near) return coarsely_over < 0;
+    return over == 0 || over >> 63 != 0;
 }
 
 }  // namespace lyr::format

@@ -342,12 +342,13 @@ bool ChunkDecoder::decode_hatch_step(Operation& out) {
     at_ = to;
     if (stage_ == HatchStage::start) {
         stage_ = HatchStage::end;
+        const bool links = linked_;
+        linked_ = false;
         if (from == to) return false;
-        if (linked_)
+        if (links)
             out = Line{from, to, true};
         else
             out = Travel{from, to, true};
-        linked_ = false;
         return true;
     }
     stage_ = HatchStage::start;

@@ -22,8 +22,7 @@ bool ChunkDecoder::decode_parallel(Operation& out) {
     const std::int64_t back = cursor_.signed_varint(), distance = cursor_.signed_varint();
     constexpr auto window = static_cast<std::int64_t>(MotionHistory::window);
     // Sums of what is in range, so that they cannot overflow.
-    if (back < -window || back > window || distance < -farthest_beside ||
-        distance > farthest_beside)
+    if (beyond(back, window) || beyond(distance, 2 * farthest_beside))
         return fail("a run is parallel to what is out of reach");
     back_ += back;
     distance_ += distance;

@@ -17,12 +17,10 @@ struct Piece {
 
 // None: an arc that is none.
 std::optional<double> length(const Point& from, const Piece& piece) {
-    const auto dx = static_cast<double>(piece.to.x - from.x);
-    const auto dy = static_cast<double>(piece.to.y - from.y);
-    const auto rise = static_cast<double>(piece.sagitta);
-    const double chord = std::hypot(dx, dy);
-    if (piece.sagitta == 0) return chord;
-    if (std::abs(rise) > most_sagitta_per_chord * chord) return std::nullopt;
+    if (piece.sagitta == 0)
+        return std::hypot(static_cast<double>(piece.to.x - from.x),
+                          static_cast<double>(piece.to.y - from.y));
+    if (!is_arc(from, piece.to, piece.sagitta)) return std::nullopt;
     return arc_shape(Arc{from, piece.to, piece.sagitta}).length();
 }
 
@@ -32,7 +30,7 @@ bool ChunkDecoder::decode_wipe(Operation& out) {
     wipe_depth_mm_ = setting(scale::filament);
     wipe_left_ = cursor_.varint();
     // Each piece takes three bytes at least.
-    if (wipe_left_ > cursor_.left() / 3) return fail("a wipe is cut short");
+    if (error_ || wipe_left_ > cursor_.left() / 3) return fail("a wipe is cut short");
     const Cursor pieces = cursor_;
     wipe_way_quanta_ = 0;
     Point from = at_;

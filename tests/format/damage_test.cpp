@@ -8,37 +8,13 @@
 #include "files.h"
 #include "format/bytes.h"
 #include "format/layout.h"
-#include "sample.h"
-#include "worked_example.h"
+#include "small_file.h"
 
 using namespace lyr;
 using namespace lyr::format;
 using test::FileBytes;
 
 namespace {
-
-// Small, but with every kind of block, three layers and a layer of two chunks.
-FileBytes small_file() {
-    const Quantum quantum{1000};
-    Metadata metadata;
-    metadata.source_name = "part.step";
-    metadata.configuration = "layer.height = 0.2\n";
-    metadata.thumbnails.push_back({2, 1, {std::byte{1}, std::byte{2}, std::byte{3}}});
-    std::vector<EncodedLayer> layers;
-    for (int i = 0; i < 3; ++i) {
-        auto layer = test::worked_layer(quantum);
-        REQUIRE(layer.ok());
-        layers.push_back(*layer);
-    }
-    // The travel behind the retraction is a chunk boundary as good as any.
-    EncodedLayer& two = layers[1];
-    const std::size_t cut = 0x127 - 0x109;
-    two.chunks = {{0, cut, 5}, {cut, two.bytes.size(), 18}};
-    two.totals.chunks = 2;
-    const std::string path = test::scratch("small");
-    test::write_layers(path, quantum, metadata, layers);
-    return test::load(path);
-}
 
 // What was given out is what the undamaged file gives, from the start.
 bool is_prefix(const test::Reading& reading, const test::Reading& whole) {
@@ -67,7 +43,7 @@ Span block_around(const FileBytes& file, std::size_t at) {
 
 TEST_CASE(
     "reader 1: a flipped bit anywhere is found before an operation of its block is given out") {
-    const FileBytes file = small_file();
+    const FileBytes file = test::small_file();
     const test::Reading whole = test::read_bytes(file);
     REQUIRE(!whole.error);
     FileBytes damaged = file;
@@ -86,7 +62,7 @@ TEST_CASE(
 }
 
 TEST_CASE("reader 3: a file that is cut at any byte is an error that names the last whole layer") {
-    const FileBytes file = small_file();
+    const FileBytes file = test::small_file();
     const test::Reading whole = test::read_bytes(file);
     REQUIRE(!whole.error);
     // Where each layer's last block ends.
@@ -119,7 +95,7 @@ TEST_CASE("reader 3: a file that is cut at any byte is an error that names the l
 }
 
 TEST_CASE("reader 3: chunks that are missing, doubled or swapped, and bytes behind the end") {
-    const FileBytes file = small_file();
+    const FileBytes file = test::small_file();
     const test::Reading whole = test::read_bytes(file);
     const std::vector<test::Block> blocks = test::split(file);
     REQUIRE(test::join(file, blocks) == file);
@@ -149,7 +125,7 @@ TEST_CASE("reader 3: chunks that are missing, doubled or swapped, and bytes behi
 }
 
 TEST_CASE("reader 4: unknown blocks are skipped if they may be, and their CRC is checked") {
-    const FileBytes file = small_file();
+    const FileBytes file = test::small_file();
     const test::Reading whole = test::read_bytes(file);
     const std::vector<test::Block> blocks = test::split(file);
     // Longer than the buffer.
@@ -181,7 +157,7 @@ TEST_CASE("reader 4: unknown blocks are skipped if they may be, and their CRC is
 }
 
 TEST_CASE("reader 4: versions") {
-    FileBytes file = small_file();
+    FileBytes file = test::small_file();
     const auto with_version = [&](std::uint8_t major, std::uint8_t minor) {
         FileBytes changed = file;
         changed[4] = static_cast<std::byte>(major);
@@ -323,7 +299,7 @@ TEST_CASE("files that are no .lyr file are refused in one line") {
 }
 
 TEST_CASE("metadata 2: lines that are no key=value and values that are no measure are refused") {
-    const FileBytes file = small_file();
+    const FileBytes file = test::small_file();
     const auto with_metadata = [&](const std::string& text) {
         std::vector<test::Block> blocks = test::split(file);
         blocks[0].payload.clear();

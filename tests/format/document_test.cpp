@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -55,4 +57,32 @@ TEST_CASE("the worked example of docs/lyr-format.md is the writer's file, byte f
     const test::Reading reading = test::read_file(path);
     CHECK(!reading.error);
     CHECK(reading.given.size() == 29);
+}
+
+TEST_CASE("the example of docs/c-reader.md is the program that the tests build, and it works") {
+    const auto text = [](const std::string& path) {
+        std::stringstream out;
+        out << std::ifstream(std::string(LYR_FIXTURES) + path).rdbuf();
+        return out.str();
+    };
+    const std::string program = text("/../tests/format/print_layers.c");
+    CHECK(!program.empty());
+    CHECK(text("/../docs/c-reader.md").find("```c\n" + program + "```\n") != std::string::npos);
+    const std::string path = test::scratch("example");
+    REQUIRE(test::write_worked_example(path).ok());
+    const auto run = [&] {
+        const std::string out = path + ".txt";
+        const int status =
+            std::system((LYR_BUILD "/print_layers " + path + " >" + out + " 2>&1").c_str());
+        std::stringstream printed;
+        printed << std::ifstream(out).rdbuf();
+        return std::pair(status, printed.str());
+    };
+    CHECK(run() == std::pair(0, std::string("layer 1: up to z = 0.200 mm\n")));
+    const std::uintmax_t cut = std::filesystem::file_size(path) - 15;
+    std::filesystem::resize_file(path, cut);
+    const auto [status, printed] = run();
+    CHECK(status != 0);
+    CHECK(printed.find("cut short at byte " + std::to_string(cut) +
+                       "; the last whole layer is 1") != std::string::npos);
 }

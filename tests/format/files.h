@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <cstddef>
@@ -11,6 +12,7 @@
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -73,10 +75,16 @@ inline Reading read_file(const std::string& path) {
     return read_all(Reader::open(path));
 }
 
-inline Reading read_bytes(const FileBytes& bytes) {
-    const std::string path = scratch("read_bytes");
-    save(bytes, path);
-    return read_file(path);
+// A file of these bytes that is on no disk.
+inline Result<Reader> open_bytes(std::span<const std::byte> bytes, ReadOptions options = {}) {
+    const int descriptor = ::memfd_create("lyr", MFD_CLOEXEC);
+    REQUIRE(::write(descriptor, bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size()));
+    REQUIRE(::lseek(descriptor, 0, SEEK_SET) == 0);
+    return Reader::from_descriptor(descriptor, "a file in memory", options);
+}
+
+inline Reading read_bytes(std::span<const std::byte> bytes) {
+    return read_all(open_bytes(bytes));
 }
 
 // A block, and a file as a list of them.

@@ -1,0 +1,89 @@
+// The layers go through the writer as if they were just encoded; it makes all the rest anew.
+
+#include "format/check/repair.h"
+
+#include "base/text.h"
+#include "format/metadata_text.h"
+
+namespace lyr::format {
+namespace {
+
+EncodedLayer encoded(std::span<const std::byte> file, const CheckedLayer& layer, Quantum quantum) {
+    EncodedLayer out;
+    out.state = layer.record.layer.state;
+    out.totals = layer.record.layer.totals;
+    out.quantum = quantum;
+    for (const CheckedChunk& chunk : layer.chunks) {
+        const auto bytes = file.subspan(static_cast<std::size_t>(chunk.begin),
+                                        static_cast<std::size_t>(chunk.end - chunk.begin));
+        const std::size_t begin = out.bytes.size();
+        out.bytes.insert(out.bytes.end(), bytes.begin(), bytes.end());
+        out.chunks.push_back({begin, out.bytes.size(), chunk.operations});
+    }
+    return out;
+}
+
+// What the writer takes, and a note for what it does not.
+Metadata writable(const Verification& verification, std::vector<std::string>& notes) {
+    if (!verification.metadata) {
+        notes.push_back(
+            "the metadata was damaged: names, configuration and thumbnails are lost, the "
+            "filament is taken to be 1.75 mm thick");
+        return {};
+    }
+    Metadata metadata = *verification.metadata;
+    if (!(metadata.filament_diameter_mm > 0)) {
+        metadata.filament_diameter_mm = Metadata{}.filament_diameter_mm;
+        notes.push_back("the metadata has no filament diameter: taken to be 1.75 mm");
+    }
+    for (auto at = metadata.extra.begin(); at != metadata.extra.end();) {
+        const bool kept = is_extra_key(at->first);
+        if (!kept) notes.push_back("the metadata's line " + in_quotes(at->first) + " is left out");
+        at = kept ? at + 1 : metadata.extra.erase(at);
+    }
+    return metadata;
+}
+
+std::string kept_layers(const Verification& verification) {
+    const std::uint32_t kept = verification.whole_from_start;
+    const std::string layers =
+        kept == 1 ? "layer 1 is" : "layers 1 to " + std::to_string(kept) + " are";
+    std::string text = layers + " kept";
+    if (verification.stated_layers) text += ", of " + std::to_string(*verification.stated_layers);
+    const std::size_t behind = verification.layers.size() - kept;
+    if (behind > 0) text += "; left out behind the damage: " + counted(behind, "whole layer");
+    return text;
+}
+
+}  // namespace
+
+Result<Repaired> repair(std::span<const std::byte> file, const Verification& verification,
+                        const std::string& name, const std::string& output) {
+    const auto refuse = [&](const std::string& why) {
+        return Diagnostic{Severity::error, ExitStatus::input, why, {.file = name}};
+    };
+    if (!verification.quantum) {
+        const bool other = !verification.findings.empty() && verification.blocks == 0;
+        return refuse(
+            other ? verification.findings.front().what
+                  : "the prologue is damaged: without the unit of its coordinates the print "
+                    "cannot be repaired");
+    }
+    if (verification.whole_from_start == 0)
+        return refuse("no layer from the bed on is whole: there is nothing to keep");
+    Repaired out;
+    if (!verification.findings.empty()) out.notes.push_back(kept_layers(verification));
+    auto writer = Writer::create(output, *verification.quantum, writable(verification, out.notes));
+    if (!writer) return writer.error();
+    for (std::size_t i = 0; i < verification.whole_from_start; ++i)
+        if (const Status appended =
+                writer->append(encoded(file, verification.layers[i], *verification.quantum));
+            !appended)
+            return appended.error();
+    const auto totals = writer->finish();
+    if (!totals) return totals.error();
+    out.totals = *totals;
+    return out;
+}
+
+}  // namespace lyr::format

@@ -1,0 +1,31 @@
+// Writes what is whole of a damaged print: its layers from the bed up to the first one that is not whole.
+//
+// Contract
+//  1. No layer behind the first damage is kept, even if it is whole: over a gap a print fails in the air.
+//  2. What is kept is kept byte for byte: operations and states of layers. Index, counts, and the figures
+//     of the metadata (layers, box, volume, filament, mass, time) are those of what is kept.
+//  3. A whole file of this version comes out as it is.
+//  4. What is left out is said, in `notes`: layers, metadata that was damaged, blocks nobody knows.
+
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "format/check/verify.h"
+#include "format/writer.h"
+
+namespace lyr::format {
+
+struct Repaired {
+    FileTotals totals;
+    std::vector<std::string> notes;
+};
+
+// `file` is what was verified. Errors: nothing can be kept (status input), not writable (output).
+Result<Repaired> repair(std::span<const std::byte> file, const Verification& verification,
+                        const std::string& name, const std::string& output);
+
+}  // namespace lyr::format

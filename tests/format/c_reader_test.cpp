@@ -1,0 +1,320 @@
+// The C reader: what it gives out and refuses is what the C++ reader does.
+
+#include "c_reader.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include "files.h"
+#include "sample.h"
+#include "small_file.h"
+
+using namespace lyr;
+using namespace lyr::format;
+using test::FileBytes;
+
+extern "C" double lyr_square_root(double value);
+
+namespace {
+
+std::string difference(const FileBytes& bytes, std::size_t most = SIZE_MAX) {
+    const ReadOptions options{.keep_thumbnails = false, .keep_configuration = false};
+    return test::difference(bytes, test::open_bytes(bytes, options), most);
+}
+
+// Of random calls to the encoder: every operation, several quanta and layers of several chunks.
+FileBytes random_file(std::uint32_t seed) {
+    const Quantum quantum{seed % 3 == 0 ? 250u : 1000u};
+    std::vector<EncodedLayer> layers;
+    for (std::uint32_t i = 0; i < 3; ++i) {
+        auto layer = test::RandomLayer(seed + i, 0.2 * (i + 1), quantum, 600).finish();
+        REQUIRE(layer.ok());
+        layers.push_back(*layer);
+    }
+    const std::string path = test::scratch("c_reader");
+    test::write_layers(path, quantum, {}, layers);
+    return test::load(path);
+}
+
+}  // namespace
+
+TEST_CASE("C reader 3: the same operations as in C++, for random prints") {
+    for (std::uint32_t seed = 0; seed < 60; seed += 3) {
+        INFO("seed " << seed);
+        const FileBytes file = random_file(seed);
+        CHECK(difference(file) == "");
+        // From a source that gives little at a time.
+        if (seed == 0) CHECK(difference(file, 7) == "");
+    }
+}
+
+TEST_CASE("C reader 1 and 3: the same verdict whatever bit is flipped") {
+    const FileBytes file = test::small_file();
+    CHECK(difference(file) == "");
+    FileBytes damaged = file;
+    for (std::size_t at = 0; at < file.size(); ++at) {
+        for (int bit = 0; bit < 8; ++bit) {
+            damaged[at] ^= static_cast<std::byte>(1 << bit);
+            INFO("byte " << at << " bit " << bit);
+            REQUIRE(difference(damaged) == "");
+            damaged[at] = file[at];
+        }
+    }
+}
+
+TEST_CASE("C reader 2 and 3: the same verdict wherever the file is cut, and the last whole layer") {
+    const FileBytes file = test::small_file();
+    for (std::size_t size = 0; size < file.size(); ++size) {
+        INFO("cut at byte " << size);
+        REQUIRE(difference({file.begin(), file.begin() + static_cast<std::ptrdiff_t>(size)}) == "");
+    }
+    FileBytes longer = file;
+    longer.push_back(std::byte{0});
+    CHECK(difference(longer) == "");
+}
+
+TEST_CASE("C reader 3 and 4: the same verdict on any byte of any payload, with a right CRC") {
+    const FileBytes file = test::small_file();
+    const std::vector<test::Block> blocks = test::split(file);
+    std::mt19937 random(5);
+    for (std::size_t i = 1; i < blocks.size(); ++i) {
+        for (std::size_t at = 0; at < blocks[i].payload.size(); ++at) {
+            for (int turn = 0; turn < 12; ++turn) {
+                auto changed = blocks;
+                const auto flip = static_cast<unsigned>(turn < 8 ? 1u << turn : 1 + random() % 255);
+                changed[i].payload[at] ^= static_cast<std::byte>(flip);
+                INFO("block " << i << " byte " << at << " flip " << flip);
+                REQUIRE(difference(test::join(file, changed)) == "");
+            }
+        }
+    }
+}
+
+TEST_CASE("C reader 3: blocks that are missing, doubled, swapped or of another type") {
+    const FileBytes file = test::small_file();
+    const std::vector<test::Block> blocks = test::split(file);
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+        INFO("block " << i);
+        auto changed = blocks;
+        changed.erase(changed.begin() + static_cast<std::ptrdiff_t>(i));
+        CHECK(difference(test::join(file, changed)) == "");
+        changed = blocks;
+        changed.insert(changed.begin() + static_cast<std::ptrdiff_t>(i), blocks[i]);
+        CHECK(difference(test::join(file, changed)) == "");
+        for (const int type : {0x00, 0x06, 0x47, 0x80, 0x81, 0x82, 0xff, 1, 2, 3, 4, 5}) {
+            changed = blocks;
+            changed[i].type = static_cast<std::uint8_t>(type);
+            CHECK(difference(test::join(file, changed)) == "");
+        }
+        if (i == 0) continue;
+        changed = blocks;
+        std::swap(changed[i], changed[i - 1]);
+        CHECK(difference(test::join(file, changed)) == "");
+    }
+}
+
+TEST_CASE("C reader 3 and 4: the same verdict on random operations") {
+    std::mt19937 random(7);
+    const auto pick = [&](int count) {
+        return std::uniform_int_distribution<int>(0, count - 1)(random);
+    };
+    const std::vector<int> codes{0x00, 0x1f, 0x20, 0x33, 0x40, 0x41, 0x42, 0x45, 0x46, 0x47,
+                                 0x48, 0x49, 0x4a, 0x50, 0x51, 0x54, 0x57, 0x58, 0x5b, 0xf3};
+    for (int i = 0; i < 20000; ++i) {
+        FileBytes raw;
+        for (const int byte : {0x50, 1, 0, 0x46, 0x80, 0x80, 0x80, 0x80, 8, 0, 0, 2})
+            raw.push_back(static_cast<std::byte>(byte));
+        const int size = pick(60);
+        for (int k = 0; k < size; ++k)
+            raw.push_back(static_cast<std::byte>(
+                pick(3) == 0 ? codes[static_cast<std::size_t>(pick(static_cast<int>(codes.size())))]
+                : pick(4)    ? pick(16)
+                             : pick(256)));
+        INFO("turn " << i);
+        REQUIRE(difference(test::raw_file(raw, 3)) == "");
+    }
+}
+
+TEST_CASE("reader: a link of no length leaves the next gap of its row a travel") {
+    FileBytes raw;
+    for (const int byte : {0x50, 0, 0, 0x46, 0x80, 0x80, 0x80, 0x80, 8, 0, 0, 2})
+        raw.push_back(static_cast<std::byte>(byte));
+    // One row of two intervals, linked, that begins where the head is: u = 0, 5, 10, 15.
+    for (const int byte : {0x47, 0, 0, 1, 5, 1, 0, 10, 10, 10})
+        raw.push_back(static_cast<std::byte>(byte));
+    const FileBytes file = test::raw_file(raw, 3);
+    CHECK(difference(file) == "");
+    const test::Reading reading = test::read_bytes(file);
+    REQUIRE(!reading.error);
+    REQUIRE(reading.given.size() == 6);
+    CHECK(reading.given[3].operation == Operation(Line{{0, 0, 0}, {5, 0, 0}, true}));
+    CHECK(reading.given[4].operation == Operation(Travel{{5, 0, 0}, {10, 0, 0}, true}));
+    CHECK(reading.given[5].operation == Operation(Line{{10, 0, 0}, {15, 0, 0}, true}));
+}
+
+TEST_CASE("reader: the widest arc is told from one that is wider by a quantum, however large") {
+    std::mt19937_64 random(9);
+    const auto verdict = [](std::int64_t dx, std::int64_t dy, std::int64_t sagitta) {
+        FileBytes raw{std::byte{0x50}, std::byte{0}, std::byte{0}};
+        const std::int64_t x = dx / 2, y = dy / 2;
+        for (const std::int64_t value : {std::int64_t{0x40}, std::int64_t{0x10}}) {
+            raw.push_back(static_cast<std::byte>(value));
+            put_signed(raw, value == 0x40 ? -x : dx);
+            put_signed(raw, value == 0x40 ? -y : dy);
+        }
+        put_signed(raw, sagitta);
+        const FileBytes file = test::raw_file(raw, 3);
+        CHECK(difference(file) == "");
+        return !test::read_bytes(file).error;
+    };
+    for (int i = 0; i < 300; ++i) {
+        const auto limit = static_cast<std::int64_t>(random() >> (random() % 30 + 33));
+        const std::int64_t dx = 2 * limit, dy = i % 3 == 0 ? 0 : 2 * (limit / (i % 7 + 1));
+        if (dx == 0) continue;
+        const long double most =
+            1.25L * std::hypot(static_cast<long double>(dx), static_cast<long double>(dy));
+        const auto widest = static_cast<std::int64_t>(std::floor(most));
+        INFO("chord " << dx << ", " << dy << " widest " << widest);
+        CHECK(verdict(dx, dy, i % 2 ? widest : -widest));
+        CHECK_FALSE(verdict(dx, dy, i % 2 ? widest + 1 : -widest - 1));
+    }
+    for (const std::int64_t sagitta : {INT64_MAX, INT64_MIN, std::int64_t{1} << 35})
+        CHECK_FALSE(verdict(100, 100, sagitta));
+}
+
+TEST_CASE(
+    "C reader 3: a buffer that a block does not fit is said so, a smaller one does for the rest") {
+    const FileBytes file = test::small_file();
+    std::size_t longest = 0;
+    for (const test::Block& block : test::split(file))
+        if (block.type < 0x80)
+            longest = std::max(longest, block.payload.size() + block_frame_bytes);
+    for (const std::size_t size : {std::size_t{16}, longest - 1, longest, longest + 100}) {
+        test::Memory memory{file};
+        test::CReader c(memory, size);
+        c.open();
+        while (lyr_next(&c.reader, &c.operation)) {
+        }
+        CHECK(c.reader.error.status == (size < longest ? LYR_TOO_LONG : LYR_END));
+    }
+}
+
+TEST_CASE("C reader: it starts at any layer, and goes back") {
+    const FileBytes file = random_file(3);
+    test::Memory memory{file};
+    test::CReader c(memory);
+    REQUIRE(c.open());
+    std::vector<std::uint64_t> operations(3);
+    while (lyr_next(&c.reader, &c.operation)) ++operations[c.reader.layer.index];
+    for (const std::uint32_t layer : {2u, 0u, 1u}) {
+        REQUIRE(lyr_seek_layer(&c.reader, layer));
+        CHECK(lyr_next(&c.reader, &c.operation));
+        CHECK(c.operation.kind == LYR_LAYER);
+        CHECK(c.operation.number == layer);
+        std::uint64_t left = 1;
+        while (lyr_next(&c.reader, &c.operation)) ++left;
+        CHECK(c.reader.error.status == LYR_END);
+        CHECK(left ==
+              std::accumulate(operations.begin() + layer, operations.end(), std::uint64_t{0}));
+    }
+    CHECK_FALSE(lyr_seek_layer(&c.reader, 3));
+    CHECK(c.reader.error.status == LYR_NO_SUCH_LAYER);
+    CHECK(lyr_seek_layer(&c.reader, 0));
+    memory.bytes = memory.bytes.first(file.size() - 1);
+    c.reader.source.size = file.size() - 1;
+    CHECK_FALSE(lyr_seek_layer(&c.reader, 0));
+    CHECK(c.reader.error.status == LYR_CUT_SHORT);
+}
+
+TEST_CASE("C reader: a wipe is given out again without touching the source") {
+    const FileBytes file = random_file(6);
+    test::Memory memory{file};
+    test::CReader c(memory);
+    REQUIRE(c.open());
+    int wipes = 0;
+    while (lyr_next(&c.reader, &c.operation)) {
+        if (c.operation.kind != LYR_WIPE) continue;
+        ++wipes;
+        const std::size_t at = memory.at;
+        const std::uint32_t pieces = c.operation.number;
+        std::vector<std::uint64_t> offsets{c.operation.offset};
+        for (std::uint32_t left = pieces; left > 1; --left) {
+            REQUIRE(lyr_next(&c.reader, &c.operation));
+            CHECK(c.operation.kind == LYR_WIPE);
+            CHECK(c.operation.number == left - 1);
+            offsets.push_back(c.operation.offset);
+        }
+        lyr_wipe_again(&c.reader);
+        for (std::uint32_t i = 0; i < pieces; ++i) {
+            REQUIRE(lyr_next(&c.reader, &c.operation));
+            CHECK(c.operation.number == pieces - i);
+            if (i > 0) CHECK(c.operation.offset == offsets[i]);
+        }
+        CHECK(memory.at == at);
+    }
+    CHECK(wipes > 50);
+}
+
+TEST_CASE("C reader: metadata, configuration and thumbnails are handed on") {
+    struct Kept {
+        test::Memory memory;
+        std::string metadata;
+        std::vector<std::pair<int, std::string>> extras;
+        bool open = false;
+    };
+    const FileBytes file = test::small_file();
+    Kept kept{{file}, "", {}};
+    lyr_source source = kept.memory.source();
+    source.user = &kept;
+    source.read = [](void* user, std::uint8_t* out, std::uint32_t count) {
+        return test::Memory::read(&static_cast<Kept*>(user)->memory, out, std::min(count, 50u));
+    };
+    source.metadata = [](void* user, const char* key, std::size_t key_size, const char* value,
+                         std::size_t size) {
+        static_cast<Kept*>(user)->metadata +=
+            std::string(key, key_size) + ':' + std::string(value, size) + '\n';
+    };
+    source.extra = [](void* user, std::uint8_t type, const std::uint8_t* bytes, std::size_t count,
+                      std::size_t left) {
+        auto& out = *static_cast<Kept*>(user);
+        if (!out.open) out.extras.push_back({type, ""});
+        if (count > 0) out.extras.back().second.append(reinterpret_cast<const char*>(bytes), count);
+        out.open = left > 0;
+    };
+    std::vector<std::byte> buffer(400);
+    lyr_reader reader;
+    REQUIRE(lyr_open(&reader, &source, buffer.data(), buffer.size()));
+    CHECK(kept.metadata.starts_with("source:part.step\n"));
+    CHECK(kept.metadata.find("layers:3\n") != std::string::npos);
+    REQUIRE(kept.extras.size() == 2);
+    CHECK(kept.extras[0] == std::pair<int, std::string>(0x82, "layer.height = 0.2\n"));
+    CHECK(kept.extras[1].first == 0x81);
+    CHECK(kept.extras[1].second.size() == 11);
+}
+
+TEST_CASE("C reader: its square root is rounded as IEEE 754 says") {
+    std::mt19937_64 random(1);
+    const auto check = [](double value) {
+        if (lyr_square_root(value) == std::sqrt(value)) return true;
+        INFO("of " << value);
+        CHECK(lyr_square_root(value) == std::sqrt(value));
+        return false;
+    };
+    CHECK(lyr_square_root(0) == 0);
+    for (int i = 0; i < 200000; ++i) {
+        const auto x =
+            static_cast<double>(static_cast<std::int64_t>(random() >> (1 + random() % 60)));
+        const auto y =
+            static_cast<double>(static_cast<std::int64_t>(random() >> (1 + random() % 60)));
+        REQUIRE(check(x));
+        REQUIRE(check(x * x + y * y));
+        // Squares and their neighbours: where rounding is hardest.
+        const double whole = static_cast<double>(random() >> 38), square = whole * whole;
+        REQUIRE(check(square));
+        REQUIRE(check(std::nextafter(square, 0)));
+        REQUIRE(check(std::nextafter(square, 1e300)));
+    }
+}

@@ -1,0 +1,29 @@
+#include <stdio.h>
+
+#include "lyr.h"
+
+static int32_t read_file(void* user, uint8_t* bytes, uint32_t count) {
+    FILE* file = user;
+    const size_t got = fread(bytes, 1, count, file);
+    return ferror(file) ? -1 : (int32_t)got;
+}
+
+int main(int count, char** arguments) {
+    static uint8_t buffer[65536];
+    static lyr_reader reader;
+    FILE* file = count == 2 ? fopen(arguments[1], "rb") : NULL;
+    if (!file) return 2;
+    const lyr_source source = {.read = read_file, .user = file};
+    lyr_operation operation;
+    lyr_open(&reader, &source, buffer, sizeof buffer);
+    while (lyr_next(&reader, &operation)) {
+        if (operation.kind == LYR_LAYER)
+            printf("layer %u: up to z = %.3f mm\n", (unsigned)operation.number + 1,
+                   operation.to.z * (reader.quantum_nm / 1e6));
+    }
+    fclose(file);
+    if (reader.error.status == LYR_END) return 0;
+    printf("%s at byte %llu; the last whole layer is %u\n", reader.error.text,
+           (unsigned long long)reader.error.offset, (unsigned)reader.error.whole_layers);
+    return 1;
+}
