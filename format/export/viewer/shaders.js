@@ -19,6 +19,7 @@ uniform int u_segments;
 uniform int u_sides;          // 0: a ribbon
 uniform float u_pixel;        // size of a pixel at distance 1
 uniform float u_least_px;     // no strand is thinner
+uniform float u_tall;         // times as high as they are
 uniform bool u_by_layer;
 uniform highp sampler2D u_style_colors;
 uniform highp sampler2D u_layer_colors;
@@ -67,7 +68,7 @@ void main() {
     vec3 across = length_mm > 0.0 ? vec3(-along.y, along.x, 0.0) : vec3(1.0, 0.0, 0.0);
     vec3 up = cross(along, across);
 
-    float width = float(a_section & 0xffffu) * 1e-3, height = float(a_section >> 16) * 1e-3;
+    float width = float(a_section & 0xffffu) * 1e-3, height = float(a_section >> 16) * 1e-3 * u_tall;
     at.z -= 0.5 * height; // the nozzle is at the top of the strand
     vec3 to_eye = u_eye - at;
     float least = u_least_px * u_pixel * length(to_eye);

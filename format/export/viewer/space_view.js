@@ -1,7 +1,9 @@
 // Draws a print in space with WebGL 2. What is drawn are the instances of lyr.strands.
 //
 //     const view = lyr.spaceView.create(canvas, strands, box);   // null: no WebGL 2 here
-//     view.draw({first, last, inLast, travels, ...});            // see draw()
+//     view.begin(wanted, 1);
+//     view.drawSome(view.plan(wanted, matrix, mmPerPixel), 0, Infinity, 0);
+//     view.finish();
 "use strict";
 
 lyr.spaceView = (() => {
@@ -12,7 +14,12 @@ lyr.spaceView = (() => {
     const tube_px = 6; // strands that are wider get a true section
     const tubeSides = 10;
     const mostVertices = 6e6; // of a picture of tubes
-    const quarterGrid_mm = 10;
+    const bedStep_mm = 10;
+    const wantedSamples = 4; // of a pixel
+
+    function vertexCount(sides, segments) {
+        return sides ? 6 * sides * (segments + 4) : 2 * (segments + 1);
+    }
 
     function compile(gl, vertex, fragment) {
         const program = gl.createProgram();
@@ -46,7 +53,7 @@ lyr.spaceView = (() => {
         }
 
         makeBed({low, high}) {
-            const gl = this.gl, step = quarterGrid_mm, points = [];
+            const gl = this.gl, step = bedStep_mm, points = [];
             const [x0, y0] = [low[0], low[1]].map((v) => step * (Math.floor(v / step) - 1));
             const [x1, y1] = [high[0], high[1]].map((v) => step * (Math.ceil(v / step) + 1));
             const sparse = Math.max(1, Math.ceil(Math.max(x1 - x0, y1 - y0) / step / 60)) * step;
@@ -127,72 +134,134 @@ lyr.spaceView = (() => {
             return out;
         }
 
-        // What is to be drawn: for each stream its runs and how many segments.
+        // What is to be drawn of whole layers and, of the last, what is printed: [{stream, segments, page, first, count}].
         plan(wanted, matrix, mmPerPixel) {
-            const out = [], fine = Math.sqrt(8 * error_px * mmPerPixel);
+            const out = [];
             for (const stream of this.strands.streams) {
                 if (stream.travel && !wanted.travels) continue;
-                // While the view moves on a slow machine, what lies inside is left out but for the last layers.
-                const first = wanted.coarse && stream.inside ? Math.max(wanted.first, wanted.last - 1) : wanted.first;
-                const begin = stream.layerStarts[Math.min(first, this.strands.layers)];
+                const begin = stream.layerStarts[Math.min(wanted.first, this.strands.layers)];
                 const whole = Math.min(wanted.inLast ? wanted.last : wanted.last + 1, this.strands.layers);
                 const end = stream.layerStarts[whole] + (wanted.inLast?.get(stream) ?? 0);
-                if (end <= begin) continue;
-                const segments = Math.min(mostSegments, Math.max(1, Math.ceil(stream.need / fine)));
-                out.push({stream, runs: this.runs(stream, begin, end, matrix), segments});
+                this.addRuns(out, stream, begin, end, matrix, mmPerPixel);
             }
             return out;
         }
 
-        // wanted: {camera, first, last (layers), inLast (null: whole; else instances of the last layer for each
-        // stream), travels, coarse, byLayer, background, bedColor}. Returns what was drawn: {instances, vertices}.
-        draw(wanted) {
+        // The same for a machine that is too slow for all: the outside of every so many layers, as much taller.
+        coarsePlan(wanted, matrix, mmPerPixel, every) {
+            const out = [], last = Math.min(wanted.last, this.strands.layers - 1);
+            for (const stream of this.strands.streams) {
+                if (stream.travel) continue;
+                if (stream.inside) {
+                    if (wanted.inLast || last < 0) continue;
+                    this.addRuns(out, stream, stream.layerStarts[last], stream.layerStarts[last + 1], matrix, mmPerPixel);
+                    continue;
+                }
+                for (let layer = last; layer >= wanted.first; layer -= every)
+                    this.addRuns(out, stream, stream.layerStarts[layer], stream.layerStarts[layer + 1], matrix,
+                        mmPerPixel);
+            }
+            return out;
+        }
+
+        // How many instances the outside of a range of layers is.
+        shellCount(wanted) {
+            const last = Math.min(wanted.last + 1, this.strands.layers), first = Math.min(wanted.first, last);
+            return this.strands.streams.filter((stream) => !stream.inside && !stream.travel)
+                .reduce((sum, stream) => sum + stream.layerStarts[last] - stream.layerStarts[first], 0);
+        }
+
+        addRuns(out, stream, begin, end, matrix, mmPerPixel) {
+            if (end <= begin) return;
+            const segments = Math.min(mostSegments,
+                Math.max(1, Math.ceil(stream.need / Math.sqrt(8 * error_px * mmPerPixel))));
+            for (const [page, first, count] of this.runs(stream, begin, end, matrix))
+                out.push({stream, segments, page, first, count});
+        }
+
+        // Begins a picture: all that follows goes into it until finish(). `tall` is how many times as high strands are.
+        // wanted: {camera, first, last (layers), inLast (null: whole; else a Map of instances of the last layer for each
+        // stream), travels, byLayer, background, bedColor}.
+        begin(wanted, tall) {
             const {gl, canvas} = this, {camera} = wanted;
-            const aspect = canvas.width / canvas.height, matrix = camera.matrix(aspect);
-            const mmPerPixel = camera.mmPerPixel(canvas.height);
+            const matrix = camera.matrix(canvas.width / canvas.height);
+            this.useFrame();
             gl.viewport(0, 0, canvas.width, canvas.height);
             gl.clearColor(...wanted.background.map((v) => v / 255), 1);
             gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
             this.drawBed(matrix, wanted.bedColor);
-
-            const plan = this.plan(wanted, matrix, mmPerPixel);
-            const sidesOf = this.sidesFor(plan, mmPerPixel), drawn = {instances: 0, vertices: 0};
-            const {program, uniforms} = this.strandProgram;
-            gl.useProgram(program);
-            this.setUniforms(uniforms, wanted, matrix, mmPerPixel / camera.distance);
-            for (const {stream, runs, segments} of plan) {
-                const sides = stream.travel ? 0 : sidesOf;
-                const vertices = sides ? 6 * sides * (segments + 4) : 2 * (segments + 1);
-                gl.uniform1i(uniforms.u_segments, segments);
-                gl.uniform1i(uniforms.u_sides, sides);
-                gl.uniform1f(uniforms.u_shade, stream.travel ? 0 : 1);
-                gl.uniform1f(uniforms.u_least_px, stream.travel ? 1.2 : 0.9);
-                for (const [page, first, count] of runs) {
-                    this.drawRun(page, first, count, vertices, sides ? gl.TRIANGLES : gl.TRIANGLE_STRIP);
-                    drawn.instances += count;
-                    drawn.vertices += count * vertices;
-                }
-            }
-            gl.bindVertexArray(null);
-            return drawn;
+            gl.useProgram(this.strandProgram.program);
+            this.setUniforms(this.strandProgram.uniforms, wanted, matrix, tall);
         }
 
+        // The picture's own buffers, smoothed: it may take several frames, during which the old one is seen.
+        useFrame() {
+            const {gl, canvas} = this, size = `${canvas.width} ${canvas.height}`;
+            if (!this.frame) this.frame = {buffer: gl.createFramebuffer(), color: gl.createRenderbuffer(),
+                depth: gl.createRenderbuffer()};
+            gl.bindFramebuffer(gl.FRAMEBUFFER, this.frame.buffer);
+            if (this.frame.size === size) return;
+            this.frame.size = size;
+            const samples = Math.min(wantedSamples, gl.getParameter(gl.MAX_SAMPLES));
+            for (const [buffer, format, place] of [[this.frame.color, gl.RGBA8, gl.COLOR_ATTACHMENT0],
+                [this.frame.depth, gl.DEPTH_COMPONENT24, gl.DEPTH_ATTACHMENT]]) {
+                gl.bindRenderbuffer(gl.RENDERBUFFER, buffer);
+                gl.renderbufferStorageMultisample(gl.RENDERBUFFER, samples, format, canvas.width, canvas.height);
+                gl.framebufferRenderbuffer(gl.FRAMEBUFFER, place, gl.RENDERBUFFER, buffer);
+            }
+        }
+
+        // Draws parts of a plan from a number on, up to so many instances. Returns the number of the next part.
+        drawSome(plan, from, most, sides) {
+            const {gl} = this, {uniforms} = this.strandProgram;
+            let left = most, at = from;
+            for (; at < plan.length && left > 0; ++at) {
+                const {stream, segments, page, first, count} = plan[at];
+                const sidesHere = stream.travel ? 0 : sides;
+                gl.uniform1i(uniforms.u_segments, segments);
+                gl.uniform1i(uniforms.u_sides, sidesHere);
+                gl.uniform1f(uniforms.u_shade, stream.travel ? 0 : 1);
+                gl.uniform1f(uniforms.u_least_px, stream.travel ? 1.2 : 0.9);
+                this.drawRun(page, first, count, vertexCount(sidesHere, segments),
+                    sidesHere ? gl.TRIANGLES : gl.TRIANGLE_STRIP);
+                left -= count;
+            }
+            return at;
+        }
+
+        // Shows the picture.
+        finish() {
+            const {gl, canvas} = this, {width, height} = canvas;
+            gl.bindVertexArray(null);
+            gl.bindFramebuffer(gl.READ_FRAMEBUFFER, this.frame.buffer);
+            gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
+            gl.blitFramebuffer(0, 0, width, height, 0, 0, width, height, gl.COLOR_BUFFER_BIT, gl.NEAREST);
+        }
+
+        // Into the same picture, after a pause.
+        resume() {
+            const {gl} = this;
+            gl.bindFramebuffer(gl.FRAMEBUFFER, this.frame.buffer);
+            gl.useProgram(this.strandProgram.program);
+        }
+
+        // True strands where they are wide enough to tell and few enough to draw.
         sidesFor(plan, mmPerPixel) {
             const typical_mm = 0.45;
             if (typical_mm / mmPerPixel < tube_px) return 0;
-            let vertices = 0;
-            for (const {runs, segments} of plan)
-                for (const run of runs) vertices += run[2] * 6 * tubeSides * (segments + 4);
+            const vertices = plan.reduce((sum, part) => sum + part.count * vertexCount(tubeSides, part.segments), 0);
             return vertices <= mostVertices ? tubeSides : 0;
         }
 
-        setUniforms(uniforms, wanted, matrix, pixel) {
-            const gl = this.gl, {right, up, back} = wanted.camera.axes();
+        setUniforms(uniforms, wanted, matrix, tall) {
+            const gl = this.gl, {camera} = wanted, {right, up, back} = camera.axes();
+            const pixel = camera.mmPerPixel(this.canvas.height) / camera.distance;
             const light = right.map((v, i) => -0.35 * v + 0.6 * up[i] + 0.72 * back[i]);
             gl.uniformMatrix4fv(uniforms.u_matrix, false, matrix);
-            gl.uniform3fv(uniforms.u_eye, wanted.camera.eye());
+            gl.uniform3fv(uniforms.u_eye, camera.eye());
             gl.uniform3fv(uniforms.u_light, light);
             gl.uniform1f(uniforms.u_pixel, pixel);
+            gl.uniform1f(uniforms.u_tall, tall);
             gl.uniform1i(uniforms.u_by_layer, wanted.byLayer ? 1 : 0);
             gl.uniform1i(uniforms.u_style_colors, 0);
             gl.uniform1i(uniforms.u_layer_colors, 1);
@@ -209,7 +278,7 @@ lyr.spaceView = (() => {
     }
 
     function create(canvas, strands, box) {
-        const gl = canvas.getContext("webgl2", {antialias: true, powerPreference: "high-performance"});
+        const gl = canvas.getContext("webgl2", {antialias: false, depth: false, powerPreference: "high-performance"});
         return gl ? new SpaceView(gl, canvas, strands, box) : null;
     }
 
