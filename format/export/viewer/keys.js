@@ -30,7 +30,7 @@ lyr.keys = (() => {
     ];
     const names = {
         ArrowUp: "↑", ArrowDown: "↓", ArrowLeft: "←", ArrowRight: "→", " ": "Space", PageUp: "Page ↑",
-        PageDown: "Page ↓", Escape: "Esc",
+        PageDown: "Page ↓", Escape: "Esc", Home: "Home", End: "End",
     };
 
     function listen(page) {

@@ -146,7 +146,7 @@ lyr.page = (() => {
             const {state, print} = this, {element} = lyr.panel;
             const from = state.low < state.high ? `${state.low + 1}–` : "";
             byId("layer-label").replaceChildren(element("b", {}, `${from}${state.high + 1}`),
-                element("small", {}, `of ${print.layerCount}`), element("br"),
+                element("small", {class: "of"}, `of ${print.layerCount}`),
                 element("small", {}, `${number(print.file.layers[state.high].z_mm)} mm`));
             const slider = byId("time"), total_s = print.schedule.total_s;
             slider.max = total_s;

@@ -84,12 +84,12 @@ lyr.panel = (() => {
             const button = element("button", {
                 "aria-pressed": shown, "data-role": role, title: "Show or hide", click: () => toggle(role),
             }, ...coloring.mode === "role" || role < 0 ? [chip] : [], capital(name));
-            return element("tr", {}, element("td", {}, button), element("td", {}, length(sum.length_mm)),
-                element("td", {}, role < 0 ? "" : volume(sum.volume_mm3)), element("td", {}, time(sum.time_s)));
+            return element("tr", {}, element("td", {}, button), element("td", {}, number(sum.length_mm / 1000)),
+                element("td", {}, role < 0 ? "" : number(sum.volume_mm3 / 1000)), element("td", {}, time(sum.time_s)));
         };
         const roles = [...sums.roles].sort((p, q) => q[1].time_s - p[1].time_s);
         return element("table", {class: "roles"},
-            element("tr", {}, ...["", "Length", "Volume", "Time"].map((name) => element("th", {}, name))),
+            element("tr", {}, ...["", "m", "cm³", "time"].map((name) => element("th", {}, name))),
             ...roles.map(([role, sum]) => row(role, lyr.motions.roles[role], sum)),
             row(-1, "travels", sums.travel));
     }

@@ -26,6 +26,7 @@ uniform highp sampler2D u_layer_colors;
 out vec3 v_normal;
 out vec3 v_face;
 out float v_across;
+out float v_relief;         // how round a ribbon looks: less where strands are a pixel or two
 flat out vec3 v_color;
 
 vec4 entry(highp sampler2D table, uint number) {
@@ -88,6 +89,7 @@ void main() {
         v_face = normalize(cross(beside, along));
         if (dot(v_face, to_eye) < 0.0) v_face = -v_face;
         v_across = sign_of;
+        v_relief = clamp(width / (8.0 * u_pixel * length(to_eye)), 0.25, 1.0);
     } else {
         // A rectangle with round sides.
         float angle = 6.2831853 * (float(side) + 0.5) / float(u_sides);
@@ -99,6 +101,7 @@ void main() {
         v_normal = normalize(round_part.x * across + round_part.y * up + 1.5 * ends * along);
         v_face = vec3(0.0);
         v_across = 2.0;
+        v_relief = 1.0;
     }
     gl_Position = color.a > 0.0 ? u_matrix * vec4(place, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
 }`;
@@ -108,13 +111,15 @@ precision highp float;
 in vec3 v_normal;
 in vec3 v_face;
 in float v_across;
+in float v_relief;
 flat in vec3 v_color;
 uniform vec3 u_light;     // towards the light
 uniform float u_shade;    // 0: flat
 out vec4 o_color;
 void main() {
     vec3 normal = v_across > 1.5 ? normalize(v_normal)
-        : normalize(v_normal * v_across + v_face * sqrt(max(0.05, 1.0 - v_across * v_across)));
+        : normalize(v_normal * v_across * v_relief +
+                    v_face * sqrt(max(0.05, 1.0 - v_across * v_across * v_relief * v_relief)));
     float light = 0.62 + 0.42 * max(0.0, dot(normal, u_light)) + 0.08 * normal.z;
     o_color = vec4(v_color * mix(1.0, light, u_shade), 1.0);
 }`;

@@ -22,6 +22,7 @@ lyr.spaceStage = (() => {
             this.available = this.view !== null;
             this.every = Math.max(1, Math.ceil(print.file.operations / mostInstances));
             this.stats = {last_ms: 0, card_ms: 0, frames: 0, instances: 0, coarse: false};
+            this.needsFit = true;
             this.coloredFor = "";
             this.movedAt_ms = -Infinity;
             this.budget = firstBudget;
@@ -34,10 +35,12 @@ lyr.spaceStage = (() => {
             this.height = height;
             this.canvas.width = Math.max(1, Math.round(width * ratio));
             this.canvas.height = Math.max(1, Math.round(height * ratio));
+            if (this.needsFit) this.fit();
         }
 
         fit() {
             this.camera.fit(this.canvas.width / this.canvas.height);
+            this.needsFit = this.canvas.width < 2 || this.canvas.height < 2;
             this.moved();
         }
 

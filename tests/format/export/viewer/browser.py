@@ -80,8 +80,8 @@ class Browser:
         self._send("POST", self.session + "/url", {"url": "file://" + os.path.abspath(path)})
 
     def run(self, script, *values):
-        """The value of a JavaScript expression or, after a `return`, of a function's body; promises are waited for."""
-        body = script if "return" in script else f"return {script}"
+        """The value of a JavaScript expression or, where there is a semicolon, of a function's body; promises are waited for."""
+        body = script if ";" in script else f"return {script}"
         return self._send("POST", self.session + "/execute/sync", {"script": body, "args": list(values)})
 
     def wait(self, condition, seconds=30):
