@@ -4,7 +4,8 @@
 lyr.page = (() => {
     const {time, number, fixed, capital} = lyr.words;
     const factors = [1, 2, 5, 10, 20, 50, 100, 200, 500];
-    const survey_ms = 8; // of a frame, while the print is looked through
+    // Of a frame, for looking the print through; more where frames are slow for other reasons.
+    const work_ms = 8, mostWork_ms = 100, workShare = 0.4;
     const motionGap_s = 1e-6; // behind a motion's end, so that it is over
 
     const byId = (id) => document.getElementById(id);
@@ -41,7 +42,7 @@ lyr.page = (() => {
             this.scheduled = false;
             this.listen();
             this.resize();
-            this.setView(this.space.available ? "space" : "plan");
+            this.setView(this.space.available && location.hash !== "#2d" ? "space" : "plan");
             if (!this.space.available) this.notice("3D needs WebGL 2, which this browser does not offer here.");
             for (const warning of print.file.warnings) this.notice(`Damaged: ${warning}.`, true);
             this.request();
@@ -358,10 +359,12 @@ lyr.page = (() => {
 
         frame() {
             this.scheduled = false;
-            const now_ms = performance.now();
+            const now_ms = performance.now(), gap_ms = now_ms - (this.frameAt_ms ?? now_ms);
+            this.frameAt_ms = now_ms;
+            this.work_ms = Math.min(mostWork_ms, Math.max(work_ms, workShare * gap_ms));
             if (this.state.playing) this.advance(now_ms);
             const surveying = this.print.surveyed < this.print.layerCount && this.survey();
-            const drawing = this.stage.draw();
+            const drawing = this.stage.draw(this.work_ms);
             const panel = byId("panel");
             // While the print plays or is looked through, the panel is written a few times a second.
             const busy = this.state.playing || surveying;
@@ -385,7 +388,7 @@ lyr.page = (() => {
         }
 
         survey() {
-            const more = this.print.survey(survey_ms, () => {});
+            const more = this.print.survey(this.work_ms);
             const {state, print} = this;
             if (state.whole) state.time_s = print.schedule.begins_s[state.high + 1];
             this.panelDirty = true;

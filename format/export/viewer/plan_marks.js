@@ -34,6 +34,12 @@ lyr.planMarks = (() => {
     function scaleBar(context, stage, theme) {
         const step = roundStep(70 / stage.scale), length = step * stage.scale;
         const x = 16, y = stage.canvas.height / stage.ratio - 16;
+        context.fillStyle = theme.stage;
+        context.globalAlpha = 0.8;
+        context.beginPath();
+        context.roundRect(x - 8, y - 24, length + 16, 32, 6);
+        context.fill();
+        context.globalAlpha = 1;
         context.strokeStyle = context.fillStyle = theme.faintText;
         context.lineWidth = 1.5;
         context.beginPath();
@@ -80,7 +86,7 @@ lyr.planMarks = (() => {
         if (!stage.under) return;
         const {layer, i} = stage.under, {motions} = layer, q = stage.print.quantum_mm;
         context.lineCap = "round";
-        for (const [color, width] of [[theme.stage, 4.5], [theme.accent, 2]]) {
+        for (const [color, width] of [[theme.stage, 6], [theme.text, 2.5]]) {
             context.strokeStyle = color;
             context.lineWidth = width;
             trace(context, stage, layer, i);

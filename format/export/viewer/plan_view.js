@@ -119,8 +119,8 @@ lyr.planView = (() => {
             if (wide ? !this.meets(x - radius, y - radius, x + radius, y + radius, margin)
                 : !this.meets(x0, y0, x1, y1, margin + rise)) return;
             if (rise < least_px / 2) return this.line(x0, y0, x1, y1, margin);
-            this.moveTo(x0, y0);
             if (radius > most_px) return this.largeArc(motions, i, arc, margin);
+            this.moveTo(x0, y0);
             this.context.arc(x, y, radius, -arc.start, -(arc.start + arc.sweep), arc.sweep > 0);
             this.atX = this.drawnX = x1;
             this.atY = this.drawnY = y1;
@@ -138,8 +138,8 @@ lyr.planView = (() => {
             const half = Math.ceil(2 * reach / radius / Math.abs(arc.sweep) * chords) + 1;
             const first = Math.max(0, Math.floor(nearest - half)), last = Math.min(chords, Math.ceil(nearest + half));
             for (let k = first; k <= last; ++k) {
-                const point = k === chords && motions.kind[i] !== kind.circle
-                    ? {x: motions.toX[i], y: motions.toY[i]} : lyr.arc.pointAt(arc, k / chords);
+                const point = k === 0 ? {x: motions.fromX[i], y: motions.fromY[i]}
+                    : k === chords ? {x: motions.toX[i], y: motions.toY[i]} : lyr.arc.pointAt(arc, k / chords);
                 const x = this.x(point.x), y = this.y(point.y);
                 if (k === first) this.moveTo(x, y);
                 else this.lineTo(x, y, true);

@@ -100,8 +100,8 @@ lyr.print = (() => {
             }
         }
 
-        // Looks at further layers for some time. `see` is given each, null where it is damaged. False: all were seen.
-        survey(budget_ms, see) {
+        // Looks at further layers for some time. False: all were seen.
+        survey(budget_ms) {
             const until = performance.now() + budget_ms;
             while (this.surveyed < this.layerCount && performance.now() < until) {
                 const index = this.surveyed++, layer = this.layer(index);
@@ -110,7 +110,6 @@ lyr.print = (() => {
                     this.schedule.set(index, layer.timing.duration_s);
                     this.coloring.take(layer.motions, layer.timing.duration_s);
                 }
-                see(index, layer);
             }
             this.schedule.update();
             return this.surveyed < this.layerCount;

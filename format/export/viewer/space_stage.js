@@ -6,10 +6,9 @@
 lyr.spaceStage = (() => {
     const mostInstances = 3e6; // 120 MB; of a larger print only every so many layers are built
     const rest_ms = 150; // after which a view that was moved is at rest
-    const build_ms = 8; // of a frame
     const building_ms = 400; // between two pictures of a print that is not all there yet
     // Instances for one frame: so many that the card takes no longer than slow_ms.
-    const firstBudget = 60000, leastBudget = 3000, slow_ms = 60, fast_ms = 25;
+    const firstBudget = 60000, leastBudget = 30000, slow_ms = 60, fast_ms = 25;
     const onScreenShare = 0.96; // of strands in dark colours, so that they stand out of a dark stage
 
     class SpaceStage {
@@ -110,8 +109,8 @@ lyr.spaceStage = (() => {
             };
         }
 
-        // Draws what can be drawn without waiting for the graphics card. True: there is more to draw, now or soon.
-        draw() {
+        // Builds for some time, and draws what can be drawn without waiting for the graphics card. True: there is more to draw, now or soon.
+        draw(build_ms) {
             const begun_ms = performance.now(), state = this.state();
             const building = this.build(build_ms);
             if (!building || begun_ms - (this.builtAt_ms ?? -Infinity) > building_ms) {

@@ -76,8 +76,8 @@ class Browser:
     def cdp(self, command, **values):
         return self._send("POST", self.session + "/goog/cdp/execute", {"cmd": command, "params": values})
 
-    def open(self, path):
-        self._send("POST", self.session + "/url", {"url": "file://" + os.path.abspath(path)})
+    def open(self, path, fragment=""):
+        self._send("POST", self.session + "/url", {"url": "file://" + os.path.abspath(path) + fragment})
 
     def run(self, script, *values):
         """The value of a JavaScript expression or, where there is a semicolon, of a function's body; promises are waited for."""
