@@ -52,4 +52,10 @@ inline constexpr double widest_sagitta_per_chord = (1 + std::numbers::sqrt2) / 2
 // What is far beyond that (1.207) is no arc of a writer's.
 inline constexpr double most_sagitta_per_chord = 1.25;
 
+inline bool is_arc(const Point& from, const Point& to, std::int64_t sagitta) {
+    const auto dx = static_cast<double>(to.x - from.x), dy = static_cast<double>(to.y - from.y);
+    const auto rise = static_cast<double>(sagitta);
+    return rise * rise <= most_sagitta_per_chord * most_sagitta_per_chord * (dx * dx + dy * dy);
+}
+
 }  // namespace lyr::format

@@ -5,9 +5,12 @@
 //  1. A Cursor never reads outside its bytes. What is not there, or does not fit 64 bits, makes it
 //     bad for good and reads as 0.
 //  2. A varint of at most 10 bytes is read; longer than necessary is allowed.
+//  3. Bits are taken from the low end of each byte. Behind bits, end_bits() goes on to the next whole byte.
 
 #pragma once
 
+#include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -25,6 +28,10 @@ inline std::uint64_t get_u64(const std::byte* at) {
 }
 
 inline constexpr std::size_t longest_varint = 10;
+
+// A number of order k in bits: m zeros and a one, then its m + k low bits above the 2^k (2^m - 1) numbers that have
+// fewer (Exp-Golomb codes). None of the file's needs more zeros.
+inline constexpr unsigned most_prefix_zeros = 40, highest_order = 15;
 
 inline std::uint64_t zigzag(std::int64_t value) {
     return (static_cast<std::uint64_t>(value) << 1) ^ static_cast<std::uint64_t>(value >> 63);
@@ -66,6 +73,25 @@ public:
 
     std::int64_t signed_varint() { return unzigzag(varint()); }
 
+    // Three signed numbers in bits, the last one of an order of its own (up to highest_order). Most lie within the bits of
+    // one look ahead.
+    std::array<std::int64_t, 3> bit_numbers(unsigned order, unsigned last_order) {
+        Ahead ahead{peek(), 0};
+        std::uint64_t x = 0, y = 0, last = 0;
+        if (ahead.take(order, x) && ahead.take(order, y) && ahead.take(last_order, last) &&
+            take(ahead.taken))
+            return {unzigzag(x), unzigzag(y), unzigzag(last)};
+        x = bit_number(order);
+        y = bit_number(order);
+        last = bit_number(last_order);
+        return {unzigzag(x), unzigzag(y), unzigzag(last)};
+    }
+    // To the next whole byte.
+    void end_bits() {
+        if (bit_ > 0) ++at_;
+        bit_ = 0;
+    }
+
     void skip(std::uint64_t count) {
         if (count > left())
             fail();
@@ -74,10 +100,59 @@ public:
     }
 
 private:
+    static constexpr unsigned fewest_peeked = 57;
+
     std::uint8_t fail() {
         bad_ = true;
         at_ = end_;
+        bit_ = 0;
         return 0;
+    }
+
+    static std::uint64_t ones(unsigned count) { return (std::uint64_t{1} << count) - 1; }
+
+    struct Ahead {
+        std::uint64_t bits = 0;
+        unsigned taken = 0;
+
+        // False: the number is not within these bits.
+        bool take(unsigned order, std::uint64_t& number) {
+            const auto zeros = static_cast<unsigned>(std::countr_zero(bits));
+            const unsigned width = zeros + order, length = zeros + 1 + width;
+            taken += length;
+            if (taken > fewest_peeked) return false;
+            number = (ones(zeros) << order) + (bits >> (zeros + 1) & ones(width));
+            bits >>= length;
+            return true;
+        }
+    };
+
+    std::uint64_t bit_number(unsigned order) {
+        const auto zeros = static_cast<unsigned>(std::countr_zero(peek()));
+        if (zeros > most_prefix_zeros) return fail();
+        if (!take(zeros + 1)) return 0;
+        const std::uint64_t low = peek() & ones(zeros + order);
+        return take(zeros + order) ? (ones(zeros) << order) + low : 0;
+    }
+
+    // The bits ahead, at least 57; zeros behind the end.
+    std::uint64_t peek() const {
+        if (left() >= 8) return get_u64(at_) >> bit_;
+        std::uint64_t ahead = 0;
+        for (std::size_t i = left(); i > 0; --i)
+            ahead = ahead << 8 | static_cast<std::uint64_t>(at_[i - 1]);
+        return ahead >> bit_;
+    }
+
+    bool take(unsigned bits) {
+        const unsigned behind = bit_ + bits;
+        if (left() * 8 < behind) {
+            fail();
+            return false;
+        }
+        at_ += behind / 8;
+        bit_ = behind % 8;
+        return true;
     }
 
     std::uint64_t long_varint() {
@@ -95,6 +170,7 @@ private:
     const std::byte* begin_ = nullptr;
     const std::byte* at_ = nullptr;
     const std::byte* end_ = nullptr;
+    unsigned bit_ = 0;  // of *at_ that are taken
     bool bad_ = false;
 };
 
@@ -120,5 +196,40 @@ inline void put_varint(Bytes& out, std::uint64_t value) {
 inline void put_signed(Bytes& out, std::int64_t value) {
     put_varint(out, zigzag(value));
 }
+
+// The bits of `number` in that order.
+inline unsigned bit_count(std::uint64_t number, unsigned order) {
+    const auto zeros = static_cast<unsigned>(std::bit_width((number >> order) + 1)) - 1;
+    return 2 * zeros + 1 + order;
+}
+
+// Puts bits behind the bytes; the last byte is filled up with zeros.
+class BitWriter {
+public:
+    explicit BitWriter(Bytes& out) : out_(out) {}
+
+    void put_signed(std::int64_t value, unsigned order) {
+        const std::uint64_t number = zigzag(value);
+        const auto zeros = static_cast<unsigned>(std::bit_width((number >> order) + 1)) - 1;
+        put(std::uint64_t{1} << zeros, zeros + 1);
+        put(number - (((std::uint64_t{1} << zeros) - 1) << order), zeros + order);
+    }
+
+private:
+    void put(std::uint64_t bits, unsigned count) {
+        for (; count > 0;) {
+            if (free_ == 0) put_byte(out_, 0), free_ = 8;
+            const unsigned taken = count < free_ ? count : free_;
+            const std::uint64_t low = bits & ((std::uint64_t{1} << taken) - 1);
+            out_.back() |= static_cast<std::byte>(low << (8 - free_));
+            bits >>= taken;
+            count -= taken;
+            free_ -= taken;
+        }
+    }
+
+    Bytes& out_;
+    unsigned free_ = 0;  // of the last byte's bits
+};
 
 }  // namespace lyr::format

@@ -12,10 +12,6 @@ namespace {
 
 constexpr std::int64_t largest_row = std::int64_t{1} << 32;
 
-bool beyond(std::int64_t value, std::int64_t limit) {
-    return value < -limit || value > limit;
-}
-
 }  // namespace
 
 void ChunkDecoder::begin_layer(const Point& start, Quantum quantum) {
@@ -41,9 +37,11 @@ ChunkDecoder::Step ChunkDecoder::next(Operation& out) {
         bool given = false;
         if (run_left_ > 0) {
             given = decode_run(out);
+        } else if (packed_left_ > 0) {
+            given = decode_packed(out);
         } else if (stage_ != HatchStage::none) {
             given = decode_hatch_step(out);
-        } else if (wipes_) {
+        } else if (wipe_left_ > 0) {
             given = decode_wipe_piece(out);
         } else if (cursor_.at_end()) {
             if (operations_ == stated_operations_) return Step::end;
@@ -65,9 +63,8 @@ bool ChunkDecoder::decode(std::uint8_t code, Operation& out) {
         operations_ += static_cast<std::uint64_t>(run_left_ - 1);
         return decode_run(out);
     }
-    if (code <= opcode::hatch) return decode_motion(code, out);
+    if (code <= opcode::wipe) return decode_motion(code, out);
     if (code <= opcode::travel_acceleration) return decode_style(code, out);
-    if (code == opcode::wipe) return decode_wipe(out);
     if (code >= opcode::first_skippable) {
         cursor_.skip(cursor_.varint());
         return false;
@@ -105,6 +102,12 @@ bool ChunkDecoder::decode_motion(std::uint8_t code, Operation& out) {
             return decode_circle(false, true, out);
         case opcode::grid:
             return decode_grid();
+        case opcode::smooth:
+            return decode_smooth(out);
+        case opcode::parallel:
+            return decode_parallel(out);
+        case opcode::wipe:
+            return decode_wipe(out);
         default:
             return decode_hatch(out);
     }
@@ -198,8 +201,7 @@ bool ChunkDecoder::decode_machine(std::uint8_t code, Operation& out) {
 }
 
 bool ChunkDecoder::may_extrude() {
-    if (!has_path_) return fail("extrusion before a path begins");
-    return wiped_ ? fail("extrusion does not begin where a wipe has ended") : true;
+    return has_path_ || fail("extrusion before a path begins");
 }
 
 bool ChunkDecoder::decode_line(bool with_z, Operation& out) {
@@ -207,6 +209,7 @@ bool ChunkDecoder::decode_line(bool with_z, Operation& out) {
     if (!may_extrude()) return false;
     if (!in_range(to) || from == to) return false;
     out = Line{from, to, false};
+    if (!with_z) history_.add(plane_motion(from, to, 0));
     at_ = to;
     return true;
 }
@@ -216,20 +219,18 @@ bool ChunkDecoder::decode_arc(bool with_z, Operation& out) {
     const std::int64_t sagitta = cursor_.signed_varint();
     if (!may_extrude()) return false;
     if (!in_range(to)) return false;
-    const auto dx = static_cast<double>(to.x - from.x), dy = static_cast<double>(to.y - from.y);
-    const auto rise = static_cast<double>(sagitta);
-    const double most = most_sagitta_per_chord * most_sagitta_per_chord * (dx * dx + dy * dy);
-    if (sagitta == 0 || rise * rise > most) return fail("an arc has no or too large a sagitta");
+    if (sagitta == 0 || !is_arc(from, to, sagitta))
+        return fail("an arc has no or too large a sagitta");
     out = Arc{from, to, sagitta};
+    if (!with_z) history_.add(plane_motion(from, to, sagitta));
     at_ = to;
     return true;
 }
 
 bool ChunkDecoder::decode_travel(bool with_z, Operation& out) {
-    const Point from = head(), to = step(with_z);
+    const Point from = at_, to = step(with_z);
     if (!in_range(to)) return false;
     at_ = to;
-    wiped_ = false;
     out = Travel{from, to, false};
     return from != to;
 }
@@ -334,12 +335,10 @@ bool ChunkDecoder::hatch_point(Point& point) {
 
 bool ChunkDecoder::decode_hatch_step(Operation& out) {
     if (stage_ == HatchStage::row && !begin_hatch_row()) return false;
-    if (linked_ && !may_extrude()) return false;
-    const Point from = head();
+    const Point from = at_;
     Point to;
     if (!hatch_point(to)) return false;
     at_ = to;
-    wiped_ = false;
     if (stage_ == HatchStage::start) {
         stage_ = HatchStage::end;
         if (from == to) return false;
@@ -367,13 +366,6 @@ Point ChunkDecoder::step_from(const Point& from, bool with_z) {
     to.y = add(from.y, cursor_.signed_varint());
     if (with_z) to.z = add(from.z, cursor_.signed_varint());
     return to;
-}
-
-bool ChunkDecoder::in_range(const Point& point) {
-    if (!beyond(point.x, coordinate_limit) && !beyond(point.y, coordinate_limit) &&
-        !beyond(point.z, coordinate_limit))
-        return true;
-    return fail("a position is out of range");
 }
 
 std::uint32_t ChunkDecoder::number() {

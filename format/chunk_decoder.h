@@ -14,6 +14,7 @@
 
 #include "format/bytes.h"
 #include "format/grid.h"
+#include "format/motion_history.h"
 #include "format/operation.h"
 #include "format/row_predictor.h"
 
@@ -54,6 +55,13 @@ private:
     bool decode_path(Operation& out);
     bool decode_hatch(Operation& out);
     bool decode_hatch_step(Operation& out);
+    bool decode_smooth(Operation& out);
+    bool decode_parallel(Operation& out);
+    bool begin_packed(Operation& out);
+    bool decode_packed(Operation& out);
+    bool give_smooth(std::int64_t x, std::int64_t y, std::int64_t sagitta, Operation& out);
+    bool give_beside(std::int64_t x, std::int64_t y, std::int64_t sagitta, Operation& out);
+    bool give_packed(const Point& to, std::int64_t sagitta, Operation& out);
     bool decode_wipe(Operation& out);
     bool decode_wipe_piece(Operation& out);
     bool begin_hatch_row();
@@ -63,10 +71,17 @@ private:
 
     Point step(bool with_z) { return step_from(at_, with_z); }
     Point step_from(const Point& from, bool with_z = false);
-    bool in_range(const Point& point);
-    // A path has begun, and the head is where the next operation begins.
+    static bool beyond(std::int64_t value, std::int64_t limit) {
+        return value < -limit || value > limit;
+    }
+    bool in_range(const Point& point) {
+        if (!beyond(point.x, coordinate_limit) && !beyond(point.y, coordinate_limit) &&
+            !beyond(point.z, coordinate_limit))
+            return true;
+        return fail("a position is out of range");
+    }
+    // A path has begun.
     bool may_extrude();
-    const Point& head() const { return wiped_ ? wiped_to_ : at_; }
     std::uint32_t number();
     double setting(double per_unit);
 
@@ -82,6 +97,18 @@ private:
 
     std::uint8_t run_code_ = 0, run_left_ = 0;
 
+    MotionHistory history_;
+    std::uint64_t packed_left_ = 0;
+    unsigned position_order_ = 0, sagitta_order_ = 0;
+    bool smooth_ = false;  // a smooth run goes on from a motion before it
+    Vector last_chord_;
+    double last_length_ = 0;
+    std::int64_t last_sagitta_ = 0;
+    bool beside_ = false;            // is the packed run a parallel one
+    std::uint64_t beside_what_ = 0;  // the number of the motion that the next one is parallel to
+    Course beside_course_;           // its course
+    std::int64_t back_ = 0, distance_ = 0;  // of the last parallel run
+
     Grid grid_;
     bool has_grid_ = false;
     RowPredictor predictor_;
@@ -90,11 +117,8 @@ private:
     std::int64_t row_ = 0, row_offset_ = 0;
     std::uint64_t rows_left_ = 0, group_rows_left_ = 0, intervals_ = 0, ends_left_ = 0;
 
-    Point wiped_to_;      // the head, away from at_ ...
-    bool wiped_ = false;  // ... until it travels on
-    bool wipes_ = false;
-    std::size_t wipe_end_ = 0;
-    double wipe_depth_mm_ = 0, wipe_left_ = 0;  // quanta
+    std::uint64_t wipe_left_ = 0;                     // pieces
+    double wipe_depth_mm_ = 0, wipe_way_quanta_ = 0;  // of these pieces
 };
 
 }  // namespace lyr::format

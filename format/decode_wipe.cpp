@@ -1,5 +1,4 @@
-// A wipe is read twice: once for its length, which says how fast the filament is drawn back, then piece by piece. What is
-// behind it goes on from where it began, so that readers which pass it over find the same places.
+// A wipe is read twice: once for its length, which says how fast the filament is drawn back, then piece by piece.
 
 #include <cmath>
 #include <optional>
@@ -30,38 +29,33 @@ std::optional<double> length(const Point& from, const Piece& piece) {
 }  // namespace
 
 bool ChunkDecoder::decode_wipe(Operation& out) {
-    const std::uint64_t bytes = cursor_.varint();
-    if (bytes > cursor_.left()) return fail("a wipe is cut short");
-    wipe_end_ = cursor_.offset() + static_cast<std::size_t>(bytes);
     wipe_depth_mm_ = setting(scale::filament);
-    wipe_left_ = 0;
+    wipe_left_ = cursor_.varint();
+    // Each piece takes three bytes at least.
+    if (wipe_left_ > cursor_.left() / 3) return fail("a wipe is cut short");
     const Cursor pieces = cursor_;
-    Point from = head();
-    while (!error_ && !cursor_.bad() && cursor_.offset() < wipe_end_) {
+    wipe_way_quanta_ = 0;
+    Point from = at_;
+    for (std::uint64_t i = 0; i < wipe_left_ && !cursor_.bad(); ++i) {
         const Piece piece{step_from(from), cursor_.signed_varint()};
         if (!in_range(piece.to)) return false;
         const std::optional<double> way = length(from, piece);
         if (!way) return fail("an arc has no or too large a sagitta");
-        wipe_left_ += *way;
+        wipe_way_quanta_ += *way;
         from = piece.to;
     }
-    if (cursor_.bad() || cursor_.offset() != wipe_end_) return fail("a wipe is cut short");
+    if (cursor_.bad()) return fail("a wipe is cut short");
     cursor_ = pieces;
-    wipes_ = true;
-    return decode_wipe_piece(out);
+    return wipe_left_ > 0 && decode_wipe_piece(out);
 }
 
 bool ChunkDecoder::decode_wipe_piece(Operation& out) {
-    if (cursor_.offset() == wipe_end_) {
-        wipes_ = false;
-        return false;
-    }
-    const Point from = head();
+    const Point from = at_;
     const Piece piece{step_from(from), cursor_.signed_varint()};
-    out = Wipe{from, piece.to, piece.sagitta, wipe_depth_mm_, quantum_.mm(1) * wipe_left_};
-    wipe_left_ -= length(from, piece).value_or(0);
-    wiped_to_ = piece.to;
-    wiped_ = wiped_to_ != at_;
+    out = Wipe{from, piece.to, piece.sagitta, wipe_depth_mm_, quantum_.mm(1) * wipe_way_quanta_};
+    --wipe_left_;
+    wipe_way_quanta_ -= length(from, piece).value_or(0);
+    at_ = piece.to;
     return piece.to != from;
 }
 

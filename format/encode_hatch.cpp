@@ -71,7 +71,7 @@ void LayerEncoder::Implementation::hatch(const HatchRun& run) {
     std::size_t intervals = 0;
     for (const HatchRow& row : run.rows) intervals += row.intervals;
     if (intervals != run.intervals.size()) mistake("a hatch's rows do not add up to its intervals");
-    if (!may_extrude()) return;
+    if (!has_path()) return;
     const std::optional<Grid> grid = grid_of(run);
     if (!grid || intervals == 0) return;
     const std::int64_t first = select_grid(*grid);

@@ -46,11 +46,6 @@ bool LayerEncoder::Implementation::has_path() {
     return has_path_ && !error_;
 }
 
-bool LayerEncoder::Implementation::may_extrude() {
-    if (wiped_to_) mistake("extrusion right behind a wipe");
-    return has_path();
-}
-
 std::optional<std::uint64_t> LayerEncoder::Implementation::checked(double value, double per_unit,
                                                                    const char* name) {
     if (!error_ && value >= 0 && value * per_unit <= static_cast<double>(largest_setting))
@@ -87,12 +82,27 @@ void LayerEncoder::Implementation::close_chunk() {
 }
 
 void LayerEncoder::Implementation::begin_operation(std::size_t most_bytes) {
-    if (out_.bytes.size() - chunk_begin_ + most_bytes > most_chunk_bytes) close_chunk();
+    flush_motions();
+    make_room(most_bytes);
     ++chunk_operations_;
     run_at_.reset();
 }
 
-// Lines and arcs share the opcode of the one before, as long as its count has room.
+void LayerEncoder::Implementation::make_room(std::size_t most_bytes) {
+    if (out_.bytes.size() - chunk_begin_ + most_bytes > most_chunk_bytes) close_chunk();
+}
+
+void LayerEncoder::Implementation::flush_motions() {
+    if (!packer_.waits()) return;
+    packer_.flush([&](std::span<const std::byte> bytes, std::size_t motions) {
+        make_room(bytes.size());
+        chunk_operations_ += motions;
+        out_.bytes.insert(out_.bytes.end(), bytes.begin(), bytes.end());
+    });
+    run_at_.reset();
+}
+
+// Climbing lines and arcs share the opcode of the one before, as long as its count has room.
 void LayerEncoder::Implementation::begin_run(std::uint8_t code, std::size_t most_bytes) {
     const std::optional<std::size_t> run = run_at_;
     begin_operation(most_bytes);
@@ -147,7 +157,7 @@ void LayerEncoder::Implementation::begin_path(const PathStyle& style) {
 
 void LayerEncoder::Implementation::travel_to(double x_mm, double y_mm, const double* z_mm) {
     const auto to = point(x_mm, y_mm, z_mm);
-    if (!to || (*to == at_ && !wiped_to_)) return;
+    if (!to || *to == at_) return;
     const bool with_z = to->z != at_.z;
     begin_operation(most_operation_bytes);
     put_byte(out_.bytes, with_z ? opcode::travel_z : opcode::travel);
@@ -157,15 +167,25 @@ void LayerEncoder::Implementation::travel_to(double x_mm, double y_mm, const dou
 
 void LayerEncoder::Implementation::line_to(double x_mm, double y_mm, const double* z_mm) {
     const auto to = point(x_mm, y_mm, z_mm);
-    if (to && may_extrude()) put_line(*to);
+    if (to && has_path()) put_line(*to);
 }
 
 void LayerEncoder::Implementation::put_line(const Point& to) {
     if (to == at_) return;
-    const bool with_z = to.z != at_.z;
-    begin_run(with_z ? opcode::line_z : opcode::line, most_operation_bytes);
-    put_step(to, with_z);
+    put_motion(to, 0);
     count_line(to);
+}
+
+// Of sagitta 0: a line.
+void LayerEncoder::Implementation::put_motion(const Point& to, std::int64_t sagitta) {
+    if (to.z == at_.z) {
+        packer_.add(plane_motion(at_, to, sagitta));
+        run_at_.reset();
+        return;
+    }
+    begin_run(sagitta == 0 ? opcode::line_z : opcode::arc_z, most_operation_bytes);
+    put_step(to, true);
+    if (sagitta != 0) put_signed(out_.bytes, sagitta);
 }
 
 void LayerEncoder::Implementation::arc_to(double x_mm, double y_mm, const double* z_mm,
@@ -173,7 +193,7 @@ void LayerEncoder::Implementation::arc_to(double x_mm, double y_mm, const double
     const double chord_mm = std::hypot(x_mm - given_x_mm_, y_mm - given_y_mm_);
     const auto to = point(x_mm, y_mm, z_mm);
     const auto sagitta = quanta(sagitta_mm);
-    if (!to || !sagitta || !may_extrude()) return;
+    if (!to || !sagitta || !has_path()) return;
     if (std::abs(sagitta_mm) >
         widest_sagitta_per_chord * chord_mm * (1 + sagitta_slack) + quantum_.mm(1)) {
         mistake("an arc turns by more than 3/2 pi");
@@ -184,10 +204,7 @@ void LayerEncoder::Implementation::arc_to(double x_mm, double y_mm, const double
         put_line(*to);
         return;
     }
-    const bool with_z = to->z != at_.z;
-    begin_run(with_z ? opcode::arc_z : opcode::arc, most_operation_bytes);
-    put_step(*to, with_z);
-    put_signed(out_.bytes, rounded);
+    put_motion(*to, rounded);
     const ArcShape shape = arc_shape(Arc{at_, *to, rounded});
     include_arc(shape.center_x, shape.center_y, shape.radius, shape.start_angle_rad,
                 shape.sweep_rad);
@@ -199,7 +216,7 @@ void LayerEncoder::Implementation::arc_to(double x_mm, double y_mm, const double
 void LayerEncoder::Implementation::circle(double center_x_mm, double center_y_mm,
                                           bool counter_clockwise) {
     const auto x = quanta(center_x_mm), y = quanta(center_y_mm);
-    if (!x || !y || !may_extrude()) return;
+    if (!x || !y || !has_path()) return;
     if (*x == at_.x && *y == at_.y) return;
     begin_operation(most_operation_bytes);
     put_byte(out_.bytes, counter_clockwise ? opcode::circle_ccw : opcode::circle_cw);
@@ -274,8 +291,7 @@ void LayerEncoder::Implementation::count_line(const Point& to) {
 }
 
 void LayerEncoder::Implementation::count_travel(const Point& to) {
-    travelled_ += distance(head(), to);
-    wiped_to_.reset();
+    travelled_ += distance(at_, to);
     include(to);
     at_ = to;
 }

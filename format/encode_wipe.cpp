@@ -1,4 +1,4 @@
-// A wipe is written as one operation that readers of minor version 0 pass over: what follows counts from where it began.
+// A wipe is one operation for all its pieces, because the filament is drawn back evenly over them.
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,7 @@ constexpr std::size_t most_head_bytes = 1 + 2 * longest_varint;
 std::vector<LayerEncoder::Implementation::Wiped> LayerEncoder::Implementation::rounded(
     std::span<const WipePiece> pieces) {
     std::vector<Wiped> wiped;
-    Point from = head();
+    Point from = at_;
     for (const WipePiece& piece : pieces) {
         const auto x = quanta(piece.x_mm), y = quanta(piece.y_mm), rise = quanta(piece.sagitta_mm);
         if (!x || !y || !rise) return {};
@@ -54,28 +54,25 @@ void LayerEncoder::Implementation::wipe(std::span<const WipePiece> pieces, doubl
 }
 
 void LayerEncoder::Implementation::put_wipe(std::span<const Wiped> pieces, double depth_mm) {
-    Bytes payload;
-    put_varint(payload, setting(depth_mm, scale::filament));
-    Point from = head();
+    begin_operation(most_head_bytes + pieces.size() * most_piece_bytes);
+    put_byte(out_.bytes, opcode::wipe);
+    put_varint(out_.bytes, setting(depth_mm, scale::filament));
+    put_varint(out_.bytes, pieces.size());
     for (const Wiped& piece : pieces) {
-        put_signed(payload, piece.to.x - from.x);
-        put_signed(payload, piece.to.y - from.y);
-        put_signed(payload, piece.sagitta);
+        put_step(piece.to, false);
+        put_signed(out_.bytes, piece.sagitta);
         if (piece.sagitta != 0) {
-            const ArcShape shape = arc_shape(Arc{from, piece.to, piece.sagitta});
+            const ArcShape shape = arc_shape(Arc{at_, piece.to, piece.sagitta});
             include_arc(shape.center_x, shape.center_y, shape.radius, shape.start_angle_rad,
                         shape.sweep_rad);
         }
         include(piece.to);
         travelled_ += piece.length;
-        from = piece.to;
+        at_ = piece.to;
     }
-    begin_operation(most_head_bytes + pieces.size() * most_piece_bytes);
-    put_byte(out_.bytes, opcode::wipe);
-    put_varint(out_.bytes, payload.size());
-    out_.bytes.insert(out_.bytes.end(), payload.begin(), payload.end());
     depth_mm_ = depth_mm;
-    wiped_to_ = from != at_ ? std::optional(from) : std::nullopt;
+    given_x_mm_ = quantum_.mm(at_.x);
+    given_y_mm_ = quantum_.mm(at_.y);
 }
 
 }  // namespace lyr::format

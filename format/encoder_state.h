@@ -10,6 +10,7 @@
 
 #include "format/bytes.h"
 #include "format/grid.h"
+#include "format/motion_packer.h"
 #include "format/row_predictor.h"
 #include "format/writer.h"
 
@@ -59,19 +60,22 @@ private:
     // Keeps the first mistake.
     void mistake(const std::string& what);
     bool has_path();
-    bool may_extrude();
     // None: a mistake.
     std::optional<std::uint64_t> checked(double value, double per_unit, const char* name);
     std::optional<std::int64_t> quanta(double mm);
     std::optional<Point> point(double x_mm, double y_mm, const double* z_mm);
 
+    // What waits is put first.
     void begin_operation(std::size_t most_bytes);
+    void flush_motions();
+    void make_room(std::size_t most_bytes);
     void put_step(const Point& to, bool with_z);
     void begin_run(std::uint8_t code, std::size_t most_bytes);
     void close_chunk();
 
     void put_line(const Point& to);
-    // What is rounded of some pieces of a wipe, from the head on.
+    void put_motion(const Point& to, std::int64_t sagitta);
+    // What is rounded of some pieces of a wipe.
     struct Wiped {
         Point to;
         std::int64_t sagitta = 0;
@@ -79,7 +83,6 @@ private:
     };
     std::vector<Wiped> rounded(std::span<const WipePiece> pieces);
     void put_wipe(std::span<const Wiped> pieces, double depth_mm);
-    Point head() const { return wiped_to_.value_or(at_); }
     void count_extrusion(double length_quanta);
     void count_travel(const Point& to);
     void count_line(const Point& to);
@@ -104,10 +107,10 @@ private:
     std::size_t chunk_begin_ = 0;
     std::uint64_t chunk_operations_ = 0;
     std::optional<std::size_t> run_at_;  // the opcode of a run that may grow
+    MotionPacker packer_;
 
     Point at_;
     double given_x_mm_ = 0, given_y_mm_ = 0;  // the same before rounding
-    std::optional<Point> wiped_to_;           // the head, where a wipe has led it away from at_
     PathStyle style_;                         // as the reader will have it
     bool has_path_ = false;
     double extruded_ = 0, travelled_ = 0;  // quanta

@@ -34,6 +34,7 @@ LayerEncoder::Implementation::Implementation(Quantum quantum, const LayerState& 
 
 Result<EncodedLayer> LayerEncoder::Implementation::finish() {
     if (error_) return *error_;
+    flush_motions();
     close_chunk();
     LayerTotals& totals = out_.totals;
     totals.chunks = static_cast<std::uint32_t>(out_.chunks.size());

@@ -11,7 +11,7 @@ namespace lyr::format {
 // Prologue: magic, major (u16), minor (u16), quantum in nm (u32), CRC-32C of these 12 bytes.
 inline constexpr std::array<std::byte, 4> magic{std::byte{'L'}, std::byte{'Y'}, std::byte{'R'},
                                                 std::byte{0x1a}};
-inline constexpr std::uint32_t major_version = 1, minor_version = 1;
+inline constexpr std::uint32_t major_version = 1, minor_version = 0;
 inline constexpr std::size_t prologue_bytes = 16;
 inline constexpr std::uint32_t coarsest_quantum_nm = 1'000'000;
 
@@ -49,13 +49,13 @@ inline constexpr std::uint8_t travel = 0x40, travel_z = 0x41;
 inline constexpr std::uint8_t circle_ccw = 0x42, circle_cw = 0x43;
 inline constexpr std::uint8_t helix_ccw = 0x44, helix_cw = 0x45;
 inline constexpr std::uint8_t grid = 0x46, hatch = 0x47;
+inline constexpr std::uint8_t smooth = 0x48, parallel = 0x49, wipe = 0x4a;
 inline constexpr std::uint8_t path = 0x50, width = 0x51, speed = 0x52, acceleration = 0x53;
 inline constexpr std::uint8_t travel_speed = 0x54, travel_acceleration = 0x55, retract = 0x56;
 inline constexpr std::uint8_t temperature = 0x57, fan = 0x58, dwell = 0x59, tool = 0x5a;
 inline constexpr std::uint8_t pause = 0x5b, object = 0x5c;
 // From here on: a varint length and as many bytes, which a reader may pass over.
 inline constexpr std::uint8_t first_skippable = 0xf0;
-inline constexpr std::uint8_t wipe = 0xf0;  // since minor version 1
 }  // namespace opcode
 
 // Which fields of the style a path states anew, in this order.
@@ -80,9 +80,13 @@ inline constexpr double temperature = 10;  // 0.1 deg C
 inline constexpr double duty = 1000;       //
 inline constexpr double time = 1000;       // 1 ms
 inline constexpr double volume = 1e6;      // 10^-6 mm^3
+inline constexpr double distance = 16;     // of a quantum
 inline constexpr double direction = 1 << 30;
 inline constexpr double offset = 1 << 24;  // of a quantum, so that a thousand pitches do not drift
 }  // namespace scale
+
+// How far parallel runs may be apart, in the file's unit: 2^32 quanta.
+inline constexpr std::int64_t farthest_beside = std::int64_t{1} << 36;
 
 // No number of this kind is larger in the file.
 inline constexpr std::uint64_t largest_setting = 0xffffffffu;

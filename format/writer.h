@@ -20,7 +20,7 @@
 //  3. What rounds to no motion at all is left out: lines, travels and hatch intervals of length 0.
 //     An arc that rounds to its chord becomes a line.
 //  4. A caller's mistake (number not finite or out of range, extrusion before begin_path, arc of
-//     more than 3/2 pi, extrusion right behind a wipe) is kept and reported by finish(); nothing else of that layer is encoded.
+//     more than 3/2 pi) is kept and reported by finish(); nothing else of that layer is encoded.
 //  5. Until Writer::finish() succeeds, the file at the path is as it was; on failure nothing is
 //     left.
 //  6. Encoded layers wait in memory, beyond 32 MiB in an unnamed temporary file, because counts and
@@ -114,7 +114,7 @@ public:
     void retract();  // to LayerState::retract_length_mm
     void retract_to(double depth_mm);
     void unretract();
-    // Draws the filament back to a depth on the way along the pieces. A travel must follow, or the layer end.
+    // Draws the filament back to a depth on the way along the pieces.
     void wipe(std::span<const WipePiece> pieces, double depth_mm);
     void temperature(Heater heater, double target_c, bool wait);
     void fan(std::uint32_t fan, double duty);
@@ -123,7 +123,7 @@ public:
     void pause(PauseReason reason);
     void object(std::uint32_t object);
 
-    // The head's position, exactly as the file will have it; behind a wipe, where the wipe began.
+    // The head's position, exactly as the file will have it.
     Point position() const;
 
     // Once. Errors (status internal): see 4.

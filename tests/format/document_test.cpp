@@ -54,5 +54,5 @@ TEST_CASE("the worked example of docs/lyr-format.md is the writer's file, byte f
     CHECK(documented == test::load(path));
     const test::Reading reading = test::read_file(path);
     CHECK(!reading.error);
-    CHECK(reading.given.size() == 18);
+    CHECK(reading.given.size() == 29);
 }

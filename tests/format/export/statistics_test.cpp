@@ -79,8 +79,8 @@ TEST_CASE("statistics 2: the figures of the worked example, and its text") {
     const std::string path = test::scratch("statistics_example");
     REQUIRE(test::write_worked_example(path).ok());
     const Statistics s = statistics_of_file(path);
-    CHECK(s.lines.count == 3);
-    CHECK(s.arcs.count == 1);
+    CHECK(s.lines.count == 6);
+    CHECK(s.arcs.count == 5);
     CHECK(s.circles.count == 1);
     CHECK(s.hatch_lines.count == 5);
     CHECK(s.hatch_runs == 1);
@@ -93,7 +93,7 @@ TEST_CASE("statistics 2: the figures of the worked example, and its text") {
     const PathStyle style{Role::outer_wall, 0.45, 0.2, 1, 60, 0};
     CHECK(outer.volume_mm3 == doctest::Approx(wall * cross_section_mm2(style)));
     const std::string text = to_text(s, "part.lyr");
-    for (const char* part : {"part.lyr: .lyr 1.1, 415 bytes, whole\n", "plate.step",
+    for (const char* part : {"part.lyr: .lyr 1.0, 462 bytes, whole\n", "plate.step",
                              "layers        1, z 0.200 to 0.200 mm, 0.2 mm thick",
                              "x 10.000 to 25.000, y 10.000 to 20.000", "outer wall", "solid infill",
                              "nozzle 210, bed 60"})

@@ -1,0 +1,99 @@
+// Packed runs: lines and arcs as small differences, in bits, from what the motions before let expect.
+
+#include "format/arc.h"
+#include "format/chunk_decoder.h"
+#include "format/layout.h"
+
+namespace lyr::format {
+
+bool ChunkDecoder::decode_smooth(Operation& out) {
+    beside_ = smooth_ = false;
+    if (history_.count() > 0) {
+        const PlaneMotion& last = history_[history_.count() - 1];
+        smooth_ = last.to_x == at_.x && last.to_y == at_.y;
+        last_chord_ = chord_of(last);
+        last_length_ = length_of(last_chord_);
+        last_sagitta_ = last.sagitta;
+    }
+    return begin_packed(out);
+}
+
+bool ChunkDecoder::decode_parallel(Operation& out) {
+    const std::int64_t back = cursor_.signed_varint(), distance = cursor_.signed_varint();
+    constexpr auto window = static_cast<std::int64_t>(MotionHistory::window);
+    // Sums of what is in range, so that they cannot overflow.
+    if (back < -window || back > window || distance < -farthest_beside ||
+        distance > farthest_beside)
+        return fail("a run is parallel to what is out of reach");
+    back_ += back;
+    distance_ += distance;
+    if (back_ < 2 || back_ > static_cast<std::int64_t>(history_.kept()) ||
+        distance_ < -farthest_beside || distance_ > farthest_beside)
+        return fail("a run is parallel to what is out of reach");
+    beside_ = true;
+    beside_what_ = history_.count() - static_cast<std::uint64_t>(back_);
+    beside_course_ = course_of(history_[beside_what_]);
+    return begin_packed(out);
+}
+
+bool ChunkDecoder::begin_packed(Operation& out) {
+    packed_left_ = cursor_.varint();
+    const std::uint8_t orders = cursor_.byte();
+    position_order_ = orders & 15;
+    sagitta_order_ = orders >> 4;
+    if (!may_extrude()) return false;
+    if (packed_left_ == 0) return fail("a packed run has no motions");
+    // Each takes three bits at least.
+    if (packed_left_ > cursor_.left() * 8 / 3) return fail("a packed run is cut short");
+    operations_ += packed_left_ - 1;
+    return decode_packed(out);
+}
+
+bool ChunkDecoder::decode_packed(Operation& out) {
+    const auto [x, y, sagitta] = cursor_.bit_numbers(position_order_, sagitta_order_);
+    if (--packed_left_ == 0) cursor_.end_bits();
+    if (cursor_.bad()) return false;
+    return beside_ ? give_beside(x, y, sagitta, out) : give_smooth(x, y, sagitta, out);
+}
+
+bool ChunkDecoder::give_smooth(std::int64_t x, std::int64_t y, std::int64_t sagitta,
+                               Operation& out) {
+    const Vector chord{static_cast<double>(x), static_cast<double>(y)};
+    const double length = length_of(chord);
+    if (smooth_) sagitta += smooth_sagitta(last_chord_, last_length_, last_sagitta_, chord, length);
+    smooth_ = true;
+    last_chord_ = chord;
+    last_length_ = length;
+    last_sagitta_ = sagitta;
+    return give_packed({at_.x + x, at_.y + y, at_.z}, sagitta, out);
+}
+
+bool ChunkDecoder::give_beside(std::int64_t x, std::int64_t y, std::int64_t sagitta,
+                               Operation& out) {
+    const PlaneMotion& old = history_[beside_what_];
+    const PlaneMotion& next = history_[++beside_what_];
+    const Course course = beside_course_;
+    beside_course_ = course_of(next);
+    const bool joined = next.from_x == old.to_x && next.from_y == old.to_y;
+    const double distance = static_cast<double>(distance_) / scale::distance;
+    const Place end = end_beside(old, course, joined ? beside_course_.start : course.end,
+                                 joined ? beside_course_.size : course.size, distance);
+    return give_packed({end.x + x, end.y + y, at_.z},
+                       sagitta + sagitta_beside(old, course, distance), out);
+}
+
+bool ChunkDecoder::give_packed(const Point& to, std::int64_t sagitta, Operation& out) {
+    const Point from = at_;
+    if (!in_range(to)) return false;
+    if (from == to) return fail("a motion of a packed run has no length");
+    if (!is_arc(from, to, sagitta)) return fail("an arc has no or too large a sagitta");
+    history_.add(plane_motion(from, to, sagitta));
+    at_ = to;
+    if (sagitta == 0)
+        out = Line{from, to, false};
+    else
+        out = Arc{from, to, sagitta};
+    return true;
+}
+
+}  // namespace lyr::format
