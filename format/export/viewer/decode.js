@@ -9,26 +9,27 @@ lyr.decode = (() => {
     const {Damage, coordinateLimit, largestSetting} = lyr.file;
     const {Grid, RowPredictor, limit: hatchLimit} = lyr.grid;
     const {Motions, kind, flag, roles} = lyr.motions;
+    const {History, longestHistory} = lyr.packed;
 
     const code = {
         lines: 0x00, arcs: 0x10, climbingLines: 0x20, climbingArcs: 0x30, travel: 0x40, climbingTravel: 0x41,
-        circleCcw: 0x42, circleCw: 0x43, helixCcw: 0x44, helixCw: 0x45, grid: 0x46, hatch: 0x47, path: 0x50,
+        circleCcw: 0x42, circleCw: 0x43, helixCcw: 0x44, helixCw: 0x45, grid: 0x46, hatch: 0x47, smoothRun: 0x48,
+        parallelRun: 0x49, wipe: 0x4a, path: 0x50,
         width: 0x51, speed: 0x52, acceleration: 0x53, travelSpeed: 0x54, travelAcceleration: 0x55, retract: 0x56,
-        temperature: 0x57, fan: 0x58, dwell: 0x59, tool: 0x5a, pause: 0x5b, object: 0x5c, wipe: 0xf0,
-        firstSkippable: 0xf0,
+        temperature: 0x57, fan: 0x58, dwell: 0x59, tool: 0x5a, pause: 0x5b, object: 0x5c, firstSkippable: 0xf0,
     };
     // What a path states anew, lowest bit first, and how many of the file's units make one.
     const pathFields = [
         ["width_mm", 1e4], ["height_mm", 1e4], ["flow", 1e5], ["speed_mm_s", 100], ["acceleration_mm_s2", 1],
     ];
     const largestRow = 2 ** 32;
+    const furthest = 2 ** 36; // of a parallel run, 1/16 quantum
 
     class Decoder {
         constructor(head) {
             this.motions = new Motions(head.operations + 16);
             this.events = [];
-            this.at = head.start; // where the next operation counts from
-            this.head = head.start; // where the head is: elsewhere after a wipe
+            this.at = head.start;
             this.path = null;
             this.travel = {
                 role: -1, width_mm: 0, height_mm: 0, flow: 0, speed_mm_s: head.travelSpeed_mm_s,
@@ -36,6 +37,8 @@ lyr.decode = (() => {
             };
             this.grid = null;
             this.predictor = new RowPredictor();
+            this.history = new History();
+            this.parallel = {back: 0, distance: 0}; // of the last parallel run
             this.noteStyle();
         }
 
@@ -59,10 +62,10 @@ lyr.decode = (() => {
                 for (let i = 0; i < count; ++i) this.runPiece(op & 0xf0);
                 return count;
             }
-            if (op <= code.hatch) this.motion(op);
+            if (op === code.smoothRun || op === code.parallelRun) return this.packedRun(op === code.parallelRun);
+            if (op <= code.wipe) this.motion(op);
             else if (op >= code.path && op <= code.travelAcceleration) this.changeStyle(op);
             else if (op >= code.retract && op <= code.object) this.machine(op);
-            else if (op === code.wipe) this.wipe();
             else if (op >= code.firstSkippable) this.cursor.skip(this.cursor.varint());
             else throw new Damage("unknown operation");
             return 1;
@@ -91,37 +94,74 @@ lyr.decode = (() => {
 
         mustExtrude() {
             if (!this.path) throw new Damage("extrusion before a path begins");
-            if (this.head !== this.at) throw new Damage("extrusion does not begin where a wipe has ended");
-        }
-
-        go(to) {
-            this.at = to;
-            this.head = to;
         }
 
         runPiece(op) {
             const climbs = op >= code.climbingLines;
             if (op === code.lines || op === code.climbingLines) {
-                const to = this.step(this.at, climbs);
+                const from = this.at, to = this.step(from, climbs);
                 this.mustExtrude();
+                if (!climbs && !same(from, to)) this.history.add(from, to, 0);
                 this.line(to, 0);
                 return;
             }
-            const from = this.at, to = this.step(from, climbs), sagitta = this.cursor.signed();
+            const to = this.step(this.at, climbs), sagitta = this.cursor.signed();
             this.mustExtrude();
-            checkArc(from, to, sagitta);
-            this.motions.add(kind.arc, from, to, this.style, 0, sagitta, 0);
-            this.go(to);
+            if (!climbs) this.history.add(this.at, to, sagitta);
+            this.arc(to, sagitta);
+        }
+
+        arc(to, sagitta) {
+            checkArc(this.at, to, sagitta);
+            this.motions.add(kind.arc, this.at, to, this.style, 0, sagitta, 0);
+            this.at = to;
+        }
+
+        // Returns how many motions it was.
+        packedRun(isParallel) {
+            const c = this.cursor, {parallel} = this;
+            this.mustExtrude();
+            if (isParallel) {
+                parallel.back += c.signed();
+                parallel.distance += c.signed();
+                if (parallel.back < 2 || parallel.back > longestHistory || Math.abs(parallel.distance) > furthest)
+                    throw new Damage("a parallel run is out of range");
+            }
+            const count = c.varint(), orders = c.byte(), bits = new lyr.packed.Bits(c);
+            if (count === 0) throw new Damage("a run has no motion");
+            for (let i = 0; i < count && !c.bad; ++i) this.packedMotion(bits, orders, isParallel);
+            if (!bits.end()) throw new Damage("a run ends in bits that are not 0");
+            return count;
+        }
+
+        packedMotion(bits, orders, isParallel) {
+            const from = this.at;
+            let expected = {x: from.x, y: from.y, sagitta: 0};
+            if (isParallel) {
+                const {back, distance} = this.parallel;
+                const old = this.history.before(back);
+                if (!old) throw new Damage("a parallel run reaches no motion");
+                expected = lyr.packed.parallel(old, this.history.before(back - 1), distance / 16);
+            }
+            const x = bits.signed(orders & 15), y = bits.signed(orders & 15), more = bits.signed(orders >> 4);
+            const to = this.checked({x: expected.x + x, y: expected.y + y, z: from.z});
+            if (!isParallel)
+                expected.sagitta = lyr.packed.smoothSagitta(this.history.before(1), from, to.x - from.x, to.y - from.y);
+            const sagitta = expected.sagitta + more;
+            if (same(from, to)) throw new Damage("a motion of a packed run has no length");
+            this.history.add(from, to, sagitta);
+            if (sagitta === 0) this.line(to, 0);
+            else this.arc(to, sagitta);
         }
 
         line(to, flags) {
             if (!same(this.at, to)) this.motions.add(kind.line, this.at, to, this.style, flags, 0, 0);
-            this.go(to);
+            this.at = to;
         }
 
         travelTo(to, flags) {
-            if (!same(this.head, to)) this.motions.add(kind.travel, this.head, to, this.travelStyle, flags, 0, 0);
-            this.go(to);
+            if (!same(this.at, to)) this.motions.add(kind.travel, this.at, to, this.travelStyle, flags, 0, 0);
+            this.at = to;
         }
 
         motion(op) {
@@ -133,6 +173,8 @@ lyr.decode = (() => {
                     return this.readGrid();
                 case code.hatch:
                     return this.hatch();
+                case code.wipe:
+                    return this.wipe();
                 default:
                     return this.circle(op === code.circleCcw || op === code.helixCcw, op >= code.helixCcw);
             }
@@ -144,7 +186,7 @@ lyr.decode = (() => {
             if (center.x === from.x && center.y === from.y) throw new Damage("a circle has no radius");
             this.motions.add(kind.circle, from, to, this.style, counterClockwise ? flag.counterClockwise : 0,
                 center.x, center.y);
-            this.go(to);
+            this.at = to;
         }
 
         readGrid() {
@@ -201,20 +243,14 @@ lyr.decode = (() => {
         }
 
         wipe() {
-            const c = this.cursor, bytes = c.varint();
-            if (bytes > c.left()) throw new Damage("a wipe is cut short");
-            const end = c.at + bytes, depth_mm = this.setting(1000);
+            const c = this.cursor, depth_mm = this.setting(1000), pieces = c.varint();
             this.events.push({before: this.motions.count, what: "wipe", depth_mm});
-            while (!c.bad && c.at < end) {
-                const from = this.head, to = this.step(from, false), sagitta = c.signed();
+            for (let i = 0; i < pieces && !c.bad; ++i) {
+                const from = this.at, to = this.step(from, false), sagitta = c.signed();
                 if (sagitta !== 0) checkArc(from, to, sagitta);
-                if (same(from, to)) continue;
-                this.motions.add(kind.wipe, from, to, this.travelStyle, 0, sagitta, 0);
-                this.head = to;
+                if (!same(from, to)) this.motions.add(kind.wipe, from, to, this.travelStyle, 0, sagitta, 0);
+                this.at = to;
             }
-            if (c.bad || c.at !== end) throw new Damage("a wipe is cut short");
-            // What follows counts from where the wipe began.
-            if (same(this.head, this.at)) this.head = this.at;
         }
 
         changeStyle(op) {

@@ -28,6 +28,7 @@ class Browser:
         driver, chromium = shutil.which("chromedriver"), shutil.which("chromium")
         if not driver or not chromium:
             raise SystemExit("the viewer's test needs Debian's packages chromium and chromium-driver (tools/setup)")
+        self.opened = 0
         self.profile = tempfile.mkdtemp(prefix="lyr-viewer-")
         self.driver = subprocess.Popen([driver, "--port=0"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         try:
@@ -77,7 +78,9 @@ class Browser:
         return self._send("POST", self.session + "/goog/cdp/execute", {"cmd": command, "params": values})
 
     def open(self, path, fragment=""):
-        self._send("POST", self.session + "/url", {"url": "file://" + os.path.abspath(path) + fragment})
+        """Anew, even if it is the page that is shown."""
+        self.opened += 1
+        self._send("POST", self.session + "/url", {"url": f"file://{os.path.abspath(path)}?{self.opened}{fragment}"})
 
     def run(self, script, *values):
         """The value of a JavaScript expression or, where there is a semicolon, of a function's body; promises are waited for."""
