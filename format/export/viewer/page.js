@@ -6,6 +6,7 @@ lyr.page = (() => {
     const factors = [1, 2, 5, 10, 20, 50, 100, 200, 500];
     // Of a frame, for looking the print through; more where frames are slow for other reasons.
     const work_ms = 8, mostWork_ms = 100, workShare = 0.4;
+    const narrow_px = 720; // as in viewer.css
     const motionGap_s = 1e-6; // behind a motion's end, so that it is over
 
     const byId = (id) => document.getElementById(id);
@@ -87,7 +88,7 @@ lyr.page = (() => {
                 this.theme = readTheme();
                 this.request();
             });
-            if (innerWidth <= 720) this.togglePanel();
+            if (innerWidth <= narrow_px) this.togglePanel();
         }
 
         fillChoices() {
@@ -107,8 +108,9 @@ lyr.page = (() => {
                 this.showCard();
                 this.request();
             };
+            const tap = and(stage.tap);
             lyr.gestures.listen(canvas, {
-                pan: and(stage.pan), zoom: and(stage.zoom), tap: and(stage.tap), hover: and(stage.hover),
+                pan: and(stage.pan), zoom: and(stage.zoom), tap: (x, y) => this.closeSheet() || tap(x, y), hover: and(stage.hover),
                 leave: and(stage.leave),
             });
         }
@@ -278,10 +280,17 @@ lyr.page = (() => {
             else help.showModal();
         }
 
+        // On a phone the statistics lie over the stage.
+        closeSheet() {
+            const open = innerWidth <= narrow_px && !byId("panel").classList.contains("closed");
+            if (open) this.togglePanel();
+            return open;
+        }
+
         escape() {
             if (byId("help").open) byId("help").close();
             else if (this.plan.measure.on) this.toggleMeasure();
-            else if (innerWidth <= 720 && !byId("panel").classList.contains("closed")) this.togglePanel();
+            else this.closeSheet();
         }
 
         fit() {
