@@ -27,7 +27,7 @@ class Browser:
     def __init__(self, width=1280, height=800, flags=()):
         driver, chromium = shutil.which("chromedriver"), shutil.which("chromium")
         if not driver or not chromium:
-            raise SystemExit("the viewer's test needs Debian's packages chromium and chromium-driver (tools/setup)")
+            raise SystemExit("the viewer's test needs Debian's packages chromium and chromium-driver (tools/setup --test)")
         self.opened = 0
         self.profile = tempfile.mkdtemp(prefix="lyr-viewer-")
         self.driver = subprocess.Popen([driver, "--port=0"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
