@@ -14,7 +14,7 @@ JOBS   ?= $(shell nproc)
 LYR_BENCH_FILES ?= fixtures/parts
 CTEST   = ctest --output-on-failure -j $(JOBS)
 
-.PHONY: all setup demo test sanitize board bench install clean
+.PHONY: all setup test-setup demo test sanitize board bench install clean
 
 all: setup
 	cmake -S . -B $(BUILD) -DCMAKE_BUILD_TYPE=Release
@@ -23,6 +23,9 @@ all: setup
 setup:
 	@tools/setup
 
+test-setup:
+	@tools/setup --test
+
 demo: all
 	@mkdir -p demo
 	$(BUILD)/stepc fixtures/parts/gearbox_base.step -o demo/gearbox_base.lyr
@@ -30,11 +33,11 @@ demo: all
 	$(BUILD)/lyrview demo/gearbox_base.lyr --layer 36 --no-travel -o demo/layer-36.svg
 	@echo "The picture: demo/layer-36.svg"
 
-test: all
+test: test-setup all
 	cmake --build $(BUILD) -j $(JOBS)
 	cd $(BUILD) && $(CTEST)
 
-sanitize: setup
+sanitize: test-setup
 	cmake -S . -B build-sanitize -DCMAKE_BUILD_TYPE=RelWithDebInfo -DLYR_SANITIZE=ON
 	cmake --build build-sanitize -j $(JOBS)
 	cd build-sanitize && $(CTEST)

@@ -1,7 +1,8 @@
-// lyrview: shows what a .lyr file will print, as a picture of a layer or in figures.
+// lyrview: shows what a .lyr file will print, as a page, as a picture of a layer or in figures.
 
 #include <limits>
 #include <string>
+#include <string_view>
 
 #include "apps/command_line.h"
 #include "apps/files.h"
@@ -9,6 +10,7 @@
 #include "base/replace_file.h"
 #include "format/export/statistics.h"
 #include "format/export/svg.h"
+#include "format/export/viewer/viewer_page.h"
 #include "format/reader.h"
 
 namespace {
@@ -25,6 +27,7 @@ struct Arguments {
 constexpr Program program{
     "lyrview", "Shows what a .lyr file will print.",
     "Examples:\n"
+    "  lyrview part.lyr -o part.html                         a page that shows it, in any browser\n"
     "  lyrview part.lyr --info                               what is in it, lengths, estimates\n"
     "  lyrview part.lyr --layer 36 -o layer.svg              layer 36 as a picture, in mm\n"
     "  lyrview part.lyr --layer 36 --no-travel -o layer.svg  only what is extruded\n"
@@ -44,7 +47,8 @@ void add_options(CLI::App& app, Arguments& arguments) {
     add_count(app, "--layer", "N", arguments.layer, {1, std::numeric_limits<std::uint32_t>::max()},
               "Draw this layer, 1 to the number of layers");
     add_file(app, "-o,--output", arguments.output_path,
-             "The picture to write (SVG); without it, or as -: standard output");
+             "What to write: a page that shows the print (.html), or with --layer a picture (SVG); "
+             "without it, or as -: the picture goes to standard output");
     add_flag(app, "--no-travel", arguments.no_travel, "Leave out the ways without extrusion");
 }
 
@@ -61,6 +65,18 @@ Status draw_layer(const Arguments& arguments) {
     return file->commit();
 }
 
+bool is_page(const std::string& path) {
+    return path.ends_with(".html") || path.ends_with(".htm");
+}
+
+Status write_page(const Arguments& arguments) {
+    auto file = ReplaceFile::open(arguments.output_path);
+    if (!file) return file.error();
+    const Status written = format::write_viewer(
+        arguments.lyr_path, [&](std::string_view piece) { file->write(piece); });
+    return written ? file->commit() : written;
+}
+
 Status show_info(const Arguments& arguments) {
     auto reader = format::Reader::open(arguments.lyr_path);
     if (!reader) return reader.error();
@@ -71,15 +87,18 @@ Status show_info(const Arguments& arguments) {
 
 Status work(const CLI::App& app, const Arguments& arguments) {
     const bool draws = arguments.layer > 0;
-    if (draws == arguments.info) return usage("say either --info or --layer N");
-    if (!draws && (app.count("--output") > 0 || arguments.no_travel))
-        return usage("-o and --no-travel need --layer N");
-    if (const Status apart = check_apart({{"the print", arguments.lyr_path}},
-                                         {{"the picture", arguments.output_path}});
+    const bool pages = !draws && !arguments.info && is_page(arguments.output_path);
+    if (!pages && draws == arguments.info)
+        return usage("say either --info or --layer N, or name a page to write: -o part.html");
+    if (!pages && !draws && app.count("--output") > 0) return usage("-o needs --layer N");
+    if (!draws && arguments.no_travel) return usage("--no-travel needs --layer N");
+    if (const Status apart =
+            check_apart({{"the print", arguments.lyr_path}},
+                        {{pages ? "the page" : "the picture", arguments.output_path}});
         !apart)
         return apart;
     const SignalWatch watch(program.name);
-    return draws ? draw_layer(arguments) : show_info(arguments);
+    return pages ? write_page(arguments) : draws ? draw_layer(arguments) : show_info(arguments);
 }
 
 }  // namespace

@@ -41,6 +41,41 @@ TEST_CASE("lyrview: the picture is the same in a file, on standard output and by
     CHECK(text_of(folder / "new.svg") == picture);
 }
 
+TEST_CASE("lyrview: a page is whole, the same from a file and a pipe, and carries the print") {
+    const Folder folder = with_print("lyrview-page");
+    CHECK(folder.run("lyrview a.lyr -o a.html").status == 0);
+    const std::string page = text_of(folder / "a.html");
+    CHECK(page.starts_with("<!DOCTYPE html>"));
+    CHECK(page.ends_with("</html>\n"));
+    for (const char* place : {"@title@", "@styles@", "@print@", "@scripts@"})
+        CHECK(page.find(place) == std::string::npos);
+    for (const char* address : {"src=", "url(", "import "})
+        CHECK(page.find(address) == std::string::npos);
+    CHECK(folder.run("lyrview - -o b.html < a.lyr").status == 0);
+    CHECK(text_of(folder / "b.html") == page);
+    CHECK(folder.run("cat a.lyr | lyrview - -o c.htm").status == 0);
+    CHECK(text_of(folder / "c.htm") == page);
+    const std::string mark = "id=\"print-file\">";
+    const std::size_t begin = page.find(mark) + mark.size();
+    folder.write("a.base64", page.substr(begin, page.find('<', begin) - begin));
+    CHECK(folder.run("base64 -d a.base64 | cmp - a.lyr").status == 0);
+}
+
+TEST_CASE("lyrview: a page of a print that is not whole is refused, and none is left") {
+    const Folder folder = with_print("lyrview-page-cut");
+    const std::string whole = text_of(folder / "a.lyr");
+    folder.write("cut.lyr", whole.substr(0, whole.size() - 40));
+    check_failure(folder.run("lyrview cut.lyr -o x.html"), 3, "cut.lyr");
+    check_failure(folder.run("lyrview missing.lyr -o x.html"), 3, "missing.lyr");
+    check_failure(folder.run("lyrview a.lyr -o missing/x.html"), 6, "missing/x.html");
+    check_failure(folder.run("lyrview a.lyr --no-travel -o x.html"), 2, "--no-travel needs");
+    fs::create_symlink("a.lyr", folder / "link.html");
+    check_failure(folder.run("lyrview a.lyr -o link.html"), 2,
+                  "the page would overwrite the print");
+    CHECK(text_of(folder / "a.lyr") == whole);
+    CHECK_FALSE(fs::exists(folder / "x.html"));
+}
+
 TEST_CASE("lyrview: --info sums up and names the file, or standard input") {
     const Folder folder = with_print("lyrview-info");
     const Ended named = folder.run("lyrview a.lyr --info");
