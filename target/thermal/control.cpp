@@ -93,6 +93,7 @@ void HeatControl::control(Channel& channel, double time_s) {
 }
 
 bool HeatControl::reached(std::size_t number) const {
+    if (trip_) return false;
     const Channel* channel = find(number);
     return !channel || !(channel->status.target_c > 0) || channel->near_s >= reached_s;
 }

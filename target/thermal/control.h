@@ -8,7 +8,7 @@
 //  3. A guard fires for a heater that is off, too, if its sensor is bad: a sensor that cannot be trusted when
 //     cold will not be when hot.
 //  4. reached() is true when the reading has been within reached_c of the target for reached_s, or there is no
-//     target.
+//     target; never after a trip.
 //  5. Nothing here asks for the time: the same sequence of readings and times gives the same powers.
 
 #pragma once

@@ -37,6 +37,8 @@ Outcome outcome(const std::string& script, double until_s, const Targets& target
     set_targets(heat, targets);
     heat.advance_to(until_s + 60);
     CHECK_FALSE(on);
+    // Who waits for a temperature waits on, though targets are gone.
+    CHECK_FALSE(heat.control().reached(config::heater_tool));
     return outcome;
 }
 
