@@ -29,22 +29,24 @@ void append_steps(const motion::StepEvent& event, std::vector<Step>& steps) {
 }  // namespace
 
 Result<StepStream> StepStream::open(const std::string& path, const config::Printer& printer,
-                                    double filament_diameter_mm) {
+                                    double filament_diameter_mm, OrderQueue* orders) {
     Result<format::Reader> reader = open_file(path);
     if (!reader) return reader.error();
     Result<motion::Planner> planner = motion::Planner::create(motion_limits(printer));
     if (!planner) return planner.error();
     const motion::Point origin{printer.start_mm[0], printer.start_mm[1], printer.start_mm[2]};
     return StepStream(path, Interpreter(std::move(*reader), printer, filament_diameter_mm),
-                      std::move(*planner), motion::StepGenerator(kinematics_of(printer), origin));
+                      std::move(*planner), motion::StepGenerator(kinematics_of(printer), origin),
+                      orders);
 }
 
 StepStream::StepStream(std::string path, Interpreter interpreter, motion::Planner planner,
-                       motion::StepGenerator generator)
+                       motion::StepGenerator generator, OrderQueue* orders)
     : path_(std::move(path)),
       interpreter_(std::move(interpreter)),
       planner_(std::move(planner)),
       generator_(generator),
+      orders_(orders),
       events_(batch_events) {}
 
 Result<bool> StepStream::next(std::vector<Step>& steps) {
@@ -60,11 +62,14 @@ Result<bool> StepStream::next(std::vector<Step>& steps) {
         while (!planner_.pop(move)) {
             if (read_all_) {
                 moves_.pop_back();
+                give_orders(planner_.time_ns(), steps);
                 return false;
             }
             if (const Status planned = plan(); !planned) return planned.error();
         }
         layer_ = move.tag;
+        give_orders(move.start_ns, steps);
+        ++popped_;
         generator_.start(move);
     }
     return true;
@@ -84,16 +89,38 @@ Status StepStream::plan() {
             return Done{};
         }
         if (const auto* rest = std::get_if<Rest>(&*held_)) planner_.dwell(rest->time_s);
+        if (const auto* order = std::get_if<HeatOrder>(&*held_)) plan(*order);
         if (const auto* move = std::get_if<motion::Move>(&*held_))
-            if (const Status pushed = planner_.push(*move); !pushed) {
-                Diagnostic error = pushed.error();
-                error.where.file = path_;
-                error.where.layer = static_cast<int>(move->tag);
-                return error;
-            }
+            if (Status pushed = plan(*move); !pushed) return pushed;
         held_.reset();
     }
     return Done{};
+}
+
+Status StepStream::plan(const motion::Move& move) {
+    if (const Status pushed = planner_.push(move); !pushed) {
+        Diagnostic error = pushed.error();
+        error.where.file = path_;
+        error.where.layer = static_cast<int>(move.tag);
+        return error;
+    }
+    // What is shorter, the planner leaves out.
+    if (motion::length_of(move.path) >= motion::Planner::shortest_mm) ++pushed_;
+    return Done{};
+}
+
+void StepStream::plan(const HeatOrder& order) {
+    if (!orders_) return;
+    if (order.is_gate()) planner_.dwell(0);
+    waiting_.push_back({pushed_, order});
+}
+
+void StepStream::give_orders(std::int64_t time_ns, std::vector<Step>& steps) {
+    for (; !waiting_.empty() && waiting_.front().before_move <= popped_; waiting_.pop_front()) {
+        const HeatOrder& order = waiting_.front().order;
+        orders_->push(order);
+        steps.push_back({time_ns, mark_axis, order.is_gate()});
+    }
 }
 
 }  // namespace lyr::run
