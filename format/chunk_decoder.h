@@ -31,7 +31,12 @@ public:
     // `operations` is how many the chunk says it has.
     void begin_chunk(std::span<const std::byte> bytes, std::uint64_t operations);
 
-    Step next(Operation& out);
+    Step next(Operation& out) {
+        begin_offset_ = cursor_.offset();
+        // Most are within packed runs.
+        if (packed_left_ > 0 && decode_packed(out)) return Step::operation;
+        return find_next(out);
+    }
 
     const PathStyle& style() const { return style_; }
     // What is wrong, after Step::error.
@@ -43,6 +48,7 @@ public:
 private:
     enum class HatchStage { none, row, start, end };
 
+    Step find_next(Operation& out);
     bool fail(const char* error);
     // These return false if they gave nothing out: passed over, or an error.
     bool decode(std::uint8_t code, Operation& out);
@@ -78,10 +84,9 @@ private:
         return value < -limit || value > limit;
     }
     bool in_range(const Point& point) {
-        if (!beyond(point.x, coordinate_limit) && !beyond(point.y, coordinate_limit) &&
-            !beyond(point.z, coordinate_limit))
-            return true;
-        return fail("a position is out of range");
+        return (!beyond(point.x, coordinate_limit) && !beyond(point.y, coordinate_limit) &&
+                !beyond(point.z, coordinate_limit)) ||
+               fail("a position is out of range");
     }
     // A path has begun.
     bool may_extrude();

@@ -51,7 +51,7 @@ bool ChunkDecoder::begin_packed(Operation& out) {
 bool ChunkDecoder::decode_packed(Operation& out) {
     const auto [x, y, sagitta] = cursor_.bit_numbers(position_order_, sagitta_order_);
     if (--packed_left_ == 0) cursor_.end_bits();
-    if (cursor_.bad()) return false;
+    if (cursor_.bad()) return fail("");
     return beside_ ? give_beside(x, y, sagitta, out) : give_smooth(x, y, sagitta, out);
 }
 

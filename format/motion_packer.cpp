@@ -38,14 +38,28 @@ struct Order {
     std::size_t bits = 0;
 };
 
-// The order in which the numbers take the fewest bits.
+// The order in which the numbers take the fewest bits, or nearly: the one from which neither neighbour is better. That
+// of the mean is not far from it.
 template <class Numbers>
 Order best_order(const Numbers& numbers) {
-    Order best;
-    for (unsigned order = 0; order <= highest_order; ++order) {
+    const auto with = [&](unsigned order) {
         std::size_t bits = 0;
         numbers([&](std::int64_t value) { bits += bit_count(zigzag(value), order); });
-        if (order == 0 || bits < best.bits) best = {order, bits};
+        return Order{order, bits};
+    };
+    double sum = 0, count = 0;
+    numbers([&](std::int64_t value) { sum += static_cast<double>(zigzag(value)), ++count; });
+    const auto mean = static_cast<std::uint64_t>(sum / count);
+    Order best = with(std::min(static_cast<unsigned>(std::bit_width(mean / 2)), highest_order));
+    const unsigned middle = best.order;
+    for (unsigned order = middle; order > 0; --order) {
+        const Order next = with(order - 1);
+        if (next.bits >= best.bits) break;
+        best = next;
+    }
+    for (unsigned order = middle + 1; best.order + 1 == order && order <= highest_order; ++order) {
+        const Order next = with(order);
+        if (next.bits < best.bits) best = next;
     }
     return best;
 }
