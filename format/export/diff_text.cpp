@@ -75,8 +75,9 @@ void append_layer(std::string& text, const LayerDifference& layer) {
 }
 
 void append_totals(std::string& text, const Difference& d) {
-    append(text, "\n%-18s%12s%12s%12s%12s%12s%12s\n", "role", "length m", "", "volume cm3", "",
-           "time s", "");
+    append(text, "\n%-18s%24s%24s%24s\n", "", "length m", "volume cm3", "time s");
+    append(text, "%-18s%12s%12s%12s%12s%12s%12s\n", "role", "first", "second", "first", "second",
+           "first", "second");
     const auto row = [&](std::string_view name, const RoleStatistics& a, const RoleStatistics& b) {
         append(text, "%-18.*s%12.3f%12.3f%12.3f%12.3f%12.1f%12.1f\n", static_cast<int>(name.size()),
                name.data(), a.length_mm / 1e3, b.length_mm / 1e3, a.volume_mm3 / 1e3,
