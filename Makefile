@@ -1,6 +1,7 @@
 # make            builds stepc, lyrrun and lyrview into build/ (installs missing Debian packages first)
 # make demo       slices the gearbox base, simulates the print, draws a layer: all into demo/
 # make test       builds and runs every test
+# make test-bits  a million random bits of a large print flipped, one at a time: both readers find each
 # make sanitize   the same tests under the address and undefined-behaviour sanitizers, into build-sanitize/
 # make board      only what a printer's board needs (lyrrun, lyrview), into build-board/
 # make bench      speed beside OpenCASCADE's and PrusaSlicer's, into build-bench/ (needs: tools/setup --bench);
@@ -14,7 +15,7 @@ JOBS   ?= $(shell nproc)
 LYR_BENCH_FILES ?= fixtures/parts
 CTEST   = ctest --output-on-failure -j $(JOBS)
 
-.PHONY: all setup demo test sanitize board bench install clean
+.PHONY: all setup demo test test-bits sanitize board bench install clean
 
 all: setup
 	cmake -S . -B $(BUILD) -DCMAKE_BUILD_TYPE=Release
@@ -33,6 +34,11 @@ demo: all
 test: all board
 	cmake --build $(BUILD) -j $(JOBS)
 	cd $(BUILD) && $(CTEST)
+
+test-bits: all
+	cmake --build $(BUILD) -j $(JOBS) --target flipped_bits
+	$(BUILD)/stepc fixtures/parts/lower_teeth.step -o $(BUILD)/lower_teeth.lyr
+	$(BUILD)/flipped_bits $(BUILD)/lower_teeth.lyr
 
 sanitize: setup
 	cmake -S . -B build-sanitize -DCMAKE_BUILD_TYPE=RelWithDebInfo -DLYR_SANITIZE=ON
