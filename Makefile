@@ -1,6 +1,7 @@
 # make            builds stepc, lyrrun and lyrview into build/ (installs missing Debian packages first)
 # make demo       slices the gearbox base, simulates the print, draws a layer: all into demo/
 # make test       builds and runs every test
+# make test-bits  a million random bits of a large print flipped, one at a time: both readers find each
 # make sanitize   the same tests under the address and undefined-behaviour sanitizers, into build-sanitize/
 # make board      only what a printer's board needs (lyrrun, lyrview), into build-board/
 # make bench      speed beside OpenCASCADE's and PrusaSlicer's, into build-bench/ (needs: tools/setup --bench);
@@ -15,7 +16,7 @@ LYR_BENCH_FILES ?= fixtures/parts
 LYR_BENCH_SET   = --set perimeters.count=3 --set infill.density=15% --set infill.pattern=grid
 CTEST   = ctest --output-on-failure -j $(JOBS)
 
-.PHONY: all setup test-setup demo test sanitize board bench install clean
+.PHONY: all setup test-setup demo test test-bits sanitize board bench install clean
 
 all: setup
 	cmake -S . -B $(BUILD) -DCMAKE_BUILD_TYPE=Release
@@ -37,6 +38,11 @@ demo: all
 test: test-setup all
 	cmake --build $(BUILD) -j $(JOBS)
 	cd $(BUILD) && $(CTEST)
+
+test-bits: all
+	cmake --build $(BUILD) -j $(JOBS) --target flipped_bits
+	$(BUILD)/stepc fixtures/parts/lower_teeth.step -o $(BUILD)/lower_teeth.lyr
+	$(BUILD)/flipped_bits $(BUILD)/lower_teeth.lyr
 
 sanitize: test-setup
 	cmake -S . -B build-sanitize -DCMAKE_BUILD_TYPE=RelWithDebInfo -DLYR_SANITIZE=ON

@@ -6,6 +6,7 @@
 
 #include "apps/command_line.h"
 #include "apps/files.h"
+#include "apps/print_checks.h"
 #include "apps/signal_watch.h"
 #include "base/replace_file.h"
 #include "format/export/statistics.h"
@@ -22,6 +23,7 @@ struct Arguments {
     std::string lyr_path, output_path = "-";
     std::uint32_t layer = 0;  // from 1; 0: not given
     bool info = false, no_travel = false;
+    CheckRequest checks;
 };
 
 constexpr Program program{
@@ -31,6 +33,10 @@ constexpr Program program{
     "  lyrview part.lyr --info                               what is in it, lengths, estimates\n"
     "  lyrview part.lyr --layer 36 -o layer.svg              layer 36 as a picture, in mm\n"
     "  lyrview part.lyr --layer 36 --no-travel -o layer.svg  only what is extruded\n"
+    "  lyrview part.lyr --verify                             is it whole? What is damaged, where?\n"
+    "  lyrview broken.lyr --repair -o whole.lyr              the layers in front of the damage\n"
+    "  lyrview --diff old.lyr new.lyr                        how the second differs from the "
+    "first\n"
     "  stepc part.step -o - | lyrview - --info               from a pipe\n"
     "\n"
     "Layers count from 1, the one on the bed. In the picture arcs are arcs at any zoom, strokes\n"
@@ -38,7 +44,8 @@ constexpr Program program{
     "and\n"
     "says so if a part is damaged.\n"
     "Exit status: 0 done, 2 options, 3 input, 4 a newer file format, 6 output, 8 stopped on "
-    "request.\n"};
+    "request,\n"
+    "9 the prints of --diff differ.\n"};
 
 void add_options(CLI::App& app, Arguments& arguments) {
     add_file(app, "print", arguments.lyr_path, "The .lyr file that stepc wrote; -: standard input")
@@ -50,6 +57,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
              "What to write: a page that shows the print (.html), or with --layer a picture (SVG); "
              "without it, or as -: the picture goes to standard output");
     add_flag(app, "--no-travel", arguments.no_travel, "Leave out the ways without extrusion");
+    add_checks(app, arguments.checks);
 }
 
 Status draw_layer(const Arguments& arguments) {
@@ -86,6 +94,10 @@ Status show_info(const Arguments& arguments) {
 }
 
 Status work(const CLI::App& app, const Arguments& arguments) {
+    if (arguments.checks.any())
+        return check_print(app, program, arguments.checks, arguments.lyr_path,
+                           arguments.output_path,
+                           arguments.layer > 0 || arguments.info || arguments.no_travel);
     const bool draws = arguments.layer > 0;
     const bool pages = !draws && !arguments.info && is_page(arguments.output_path);
     if (!pages && draws == arguments.info)

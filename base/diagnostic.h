@@ -32,6 +32,7 @@ enum class ExitStatus : int {
     output = 6,       // the result cannot be written
     machine = 7,      // the printer cannot do, or did not do, what the file asks
     stopped = 8,      // ended on request (SIGINT, SIGTERM) before it was done
+    differs = 9,      // two prints that were compared are not the same
 };
 
 // Where in the input or the result. Everything is optional; `line` and `column` count from 1.

@@ -54,6 +54,13 @@ std::string kind_of(std::uint8_t type) {
     return "a block of type " + hexadecimal(type);
 }
 
+// The layer at hand; `sound` while nothing of it was wrong.
+struct OpenLayer {
+    CheckedLayer layer;
+    std::uint64_t operations = 0;
+    bool sound = false;
+};
+
 class Verifier {
 public:
     explicit Verifier(Bytes file) : file_(file) { out_.bytes = file.size(); }
@@ -75,14 +82,6 @@ public:
     }
 
 private:
-    // The layer at hand; `sound` while nothing of it was wrong.
-    struct OpenLayer {
-        CheckedLayer layer;
-        ChunkDecoder decoder;
-        std::uint64_t operations = 0;
-        bool sound = false;
-    };
-
     void find(std::uint64_t begin, std::uint64_t end, std::string what,
               ExitStatus status = ExitStatus::input) {
         out_.findings.push_back({begin, end, std::move(what), status});
@@ -258,7 +257,7 @@ private:
         expect_behind(place, record->layer.totals.chunks);
         open_.emplace();
         open_->layer = {*record, piece.begin, piece.end, {}};
-        open_->decoder.begin_layer(record->start, out_.quantum.value_or(Quantum{}));
+        decoder_.begin_layer(record->start, out_.quantum.value_or(Quantum{}));
         open_->sound = true;
     }
 
@@ -299,7 +298,7 @@ private:
         expect_behind(place, of_open ? open_->layer.record.layer.totals.chunks : unknown_chunks);
         if (!of_open || !open_->sound) return;
         const std::uint64_t begin = piece.begin + block_head_bytes + cursor.offset();
-        open_->decoder.begin_chunk(payload.subspan(cursor.offset()), operations);
+        decoder_.begin_chunk(payload.subspan(cursor.offset()), operations);
         decode(piece, place, begin);
         open_->layer.chunks.push_back({begin, piece.end - block_crc_bytes, operations});
         open_->layer.end = piece.end;
@@ -308,14 +307,13 @@ private:
 
     void decode(const Piece& piece, const PrintPlace& place, std::uint64_t begin) {
         Operation operation;
-        ChunkDecoder& decoder = open_->decoder;
         ChunkDecoder::Step step = ChunkDecoder::Step::operation;
-        while (step == ChunkDecoder::Step::operation) step = decoder.next(operation);
+        while (step == ChunkDecoder::Step::operation) step = decoder_.next(operation);
         if (step == ChunkDecoder::Step::end) return;
         open_->sound = false;
         find(piece.begin, piece.end,
-             name_of(place) + " makes no sense: " + decoder.error() + " at byte " +
-                 std::to_string(begin + decoder.end_offset()));
+             name_of(place) + " makes no sense: " + decoder_.error() + " at byte " +
+                 std::to_string(begin + decoder_.end_offset()));
     }
 
     void take_index(const Piece& piece) {
@@ -401,6 +399,8 @@ private:
     bool complete_ = true;               // nothing is lost so far
     bool ended_ = false;
     std::optional<OpenLayer> open_;
+    MotionHistory history_;
+    ChunkDecoder decoder_{history_};
     std::vector<std::uint64_t> offsets_;
     std::uint64_t index_offset_ = 0;
 };

@@ -45,7 +45,9 @@ private:
         const double length_mm = length_quanta * mm_;
         role().length_mm += length_mm;
         role().volume_mm3 += length_mm * cross_section_mm2(style);
-        if (style.speed_mm_s > 0) out_.moving_time_s += length_mm / style.speed_mm_s;
+        if (!(style.speed_mm_s > 0)) return;
+        role().moving_time_s += length_mm / style.speed_mm_s;
+        out_.moving_time_s += length_mm / style.speed_mm_s;
     }
 
     void travel(double length_quanta) {

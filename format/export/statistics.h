@@ -26,6 +26,7 @@ struct RoleStatistics {
     std::uint64_t paths = 0, lines = 0, arcs = 0, circles = 0;
     std::uint64_t hatch_lines = 0;  // intervals and links of hatch runs
     double length_mm = 0, volume_mm3 = 0;
+    double moving_time_s = 0;  // way over speed
 
     std::uint64_t motions() const { return lines + arcs + circles + hatch_lines; }
 };

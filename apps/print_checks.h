@@ -1,0 +1,26 @@
+// What lyrview does with prints that may be damaged, and with two of them: --verify, --repair, --diff.
+
+#pragma once
+
+#include <string>
+
+#include "apps/command_line.h"
+#include "base/diagnostic.h"
+
+namespace lyr::command_line {
+
+struct CheckRequest {
+    bool verify = false, repair = false;
+    std::string diff_path;  // the print that the other one is compared with
+
+    bool any() const { return verify || repair || !diff_path.empty(); }
+};
+
+void add_checks(CLI::App& app, CheckRequest& request);
+
+// `others`: options of the command line that are not for these. Errors: the print is damaged or missing (input), of a newer
+// version (unsupported), the two differ (differs), not writable (output), options that do not go together (usage).
+Status check_print(const CLI::App& app, const Program& program, const CheckRequest& request,
+                   const std::string& lyr_path, const std::string& output_path, bool others);
+
+}  // namespace lyr::command_line
