@@ -73,18 +73,18 @@ public:
 
     std::int64_t signed_varint() { return unzigzag(varint()); }
 
-    // Three signed numbers in bits, the last one of an order of its own (up to highest_order). Most lie within the bits of
-    // one look ahead.
-    std::array<std::int64_t, 3> bit_numbers(unsigned order, unsigned last_order) {
+    // Three signed numbers in bits, the last one of an order of its own (up to highest_order). Mostly they lie within the
+    // bits of one look ahead.
+    struct Three {
+        std::int64_t x = 0, y = 0, z = 0;
+    };
+    Three bit_numbers(unsigned order, unsigned last_order) {
         Ahead ahead{peek(), 0};
-        std::uint64_t x = 0, y = 0, last = 0;
-        if (ahead.take(order, x) && ahead.take(order, y) && ahead.take(last_order, last) &&
-            take(ahead.taken))
-            return {unzigzag(x), unzigzag(y), unzigzag(last)};
-        x = bit_number(order);
-        y = bit_number(order);
-        last = bit_number(last_order);
-        return {unzigzag(x), unzigzag(y), unzigzag(last)};
+        const std::uint64_t x = ahead.number(order), y = ahead.number(order);
+        const std::uint64_t z = ahead.number(last_order);
+        if (ahead.taken > fewest_peeked) return long_bit_numbers(order, last_order);
+        take(ahead.taken);
+        return {unzigzag(x), unzigzag(y), unzigzag(z)};
     }
     // To the next whole byte.
     void end_bits() {
@@ -113,19 +113,24 @@ private:
 
     struct Ahead {
         std::uint64_t bits = 0;
-        unsigned taken = 0;
+        unsigned taken = 0;  // more than there are: the numbers are none
 
-        // False: the number is not within these bits.
-        bool take(unsigned order, std::uint64_t& number) {
-            const auto zeros = static_cast<unsigned>(std::countr_zero(bits));
+        std::uint64_t number(unsigned order) {
+            constexpr std::uint64_t end = std::uint64_t{1} << (fewest_peeked - 1);
+            const auto zeros = static_cast<unsigned>(std::countr_zero(bits | end));
             const unsigned width = zeros + order, length = zeros + 1 + width;
             taken += length;
-            if (taken > fewest_peeked) return false;
-            number = (ones(zeros) << order) + (bits >> (zeros + 1) & ones(width));
-            bits >>= length;
-            return true;
+            const std::uint64_t low = bits >> (zeros + 1), top = std::uint64_t{1} << (width & 63);
+            bits >>= length & 63;
+            return (low & (top - 1)) + top - (std::uint64_t{1} << order);
         }
     };
+
+    Three long_bit_numbers(unsigned order, unsigned last_order) {
+        const std::uint64_t x = bit_number(order), y = bit_number(order);
+        const std::uint64_t z = bit_number(last_order);
+        return {unzigzag(x), unzigzag(y), unzigzag(z)};
+    }
 
     std::uint64_t bit_number(unsigned order) {
         const auto zeros = static_cast<unsigned>(std::countr_zero(peek()));

@@ -15,7 +15,8 @@ constexpr std::int64_t largest_row = std::int64_t{1} << 32;
 }  // namespace
 
 void ChunkDecoder::begin_layer(const Point& start, Quantum quantum) {
-    *this = ChunkDecoder();
+    history_->clear();
+    *this = ChunkDecoder(*history_);
     quantum_ = quantum;
     at_ = start;
 }
@@ -209,7 +210,7 @@ bool ChunkDecoder::decode_line(bool with_z, Operation& out) {
     if (!may_extrude()) return false;
     if (!in_range(to) || from == to) return false;
     out = Line{from, to, false};
-    if (!with_z) history_.add(plane_motion(from, to, 0));
+    if (!with_z) history_->add(plane_motion(from, to, 0));
     at_ = to;
     return true;
 }
@@ -222,7 +223,7 @@ bool ChunkDecoder::decode_arc(bool with_z, Operation& out) {
     if (sagitta == 0 || !is_arc(from, to, sagitta))
         return fail("an arc has no or too large a sagitta");
     out = Arc{from, to, sagitta};
-    if (!with_z) history_.add(plane_motion(from, to, sagitta));
+    if (!with_z) history_->add(plane_motion(from, to, sagitta));
     at_ = to;
     return true;
 }

@@ -24,6 +24,9 @@ class ChunkDecoder {
 public:
     enum class Step { operation, end, error };
 
+    // The history is the decoder's alone; large, so that it stands elsewhere.
+    explicit ChunkDecoder(MotionHistory& history) : history_(&history) {}
+
     void begin_layer(const Point& start, Quantum quantum);
     // `operations` is how many the chunk says it has.
     void begin_chunk(std::span<const std::byte> bytes, std::uint64_t operations);
@@ -97,7 +100,7 @@ private:
 
     std::uint8_t run_code_ = 0, run_left_ = 0;
 
-    MotionHistory history_;
+    MotionHistory* history_;
     std::uint64_t packed_left_ = 0;
     unsigned position_order_ = 0, sagitta_order_ = 0;
     bool smooth_ = false;  // a smooth run goes on from a motion before it

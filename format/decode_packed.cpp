@@ -8,8 +8,8 @@ namespace lyr::format {
 
 bool ChunkDecoder::decode_smooth(Operation& out) {
     beside_ = smooth_ = false;
-    if (history_.count() > 0) {
-        const PlaneMotion& last = history_[history_.count() - 1];
+    if (history_->count() > 0) {
+        const PlaneMotion& last = (*history_)[history_->count() - 1];
         smooth_ = last.to_x == at_.x && last.to_y == at_.y;
         last_chord_ = chord_of(last);
         last_length_ = length_of(last_chord_);
@@ -27,12 +27,12 @@ bool ChunkDecoder::decode_parallel(Operation& out) {
         return fail("a run is parallel to what is out of reach");
     back_ += back;
     distance_ += distance;
-    if (back_ < 2 || back_ > static_cast<std::int64_t>(history_.kept()) ||
+    if (back_ < 2 || back_ > static_cast<std::int64_t>(history_->kept()) ||
         distance_ < -farthest_beside || distance_ > farthest_beside)
         return fail("a run is parallel to what is out of reach");
     beside_ = true;
-    beside_what_ = history_.count() - static_cast<std::uint64_t>(back_);
-    beside_course_ = course_of(history_[beside_what_]);
+    beside_what_ = history_->count() - static_cast<std::uint64_t>(back_);
+    beside_course_ = course_of((*history_)[beside_what_]);
     return begin_packed(out);
 }
 
@@ -70,8 +70,8 @@ bool ChunkDecoder::give_smooth(std::int64_t x, std::int64_t y, std::int64_t sagi
 
 bool ChunkDecoder::give_beside(std::int64_t x, std::int64_t y, std::int64_t sagitta,
                                Operation& out) {
-    const PlaneMotion& old = history_[beside_what_];
-    const PlaneMotion& next = history_[++beside_what_];
+    const PlaneMotion& old = (*history_)[beside_what_];
+    const PlaneMotion& next = (*history_)[++beside_what_];
     const Course course = beside_course_;
     beside_course_ = course_of(next);
     const bool joined = next.from_x == old.to_x && next.from_y == old.to_y;
@@ -87,12 +87,18 @@ bool ChunkDecoder::give_packed(const Point& to, std::int64_t sagitta, Operation&
     if (!in_range(to)) return false;
     if (from == to) return fail("a motion of a packed run has no length");
     if (!is_arc(from, to, sagitta)) return fail("an arc has no or too large a sagitta");
-    history_.add(plane_motion(from, to, sagitta));
+    history_->add(plane_motion(from, to, sagitta));
     at_ = to;
-    if (sagitta == 0)
-        out = Line{from, to, false};
-    else
-        out = Arc{from, to, sagitta};
+    if (sagitta == 0) {
+        Line& line = out.emplace<Line>();
+        line.from = from;
+        line.to = to;
+    } else {
+        Arc& arc = out.emplace<Arc>();
+        arc.from = from;
+        arc.to = to;
+        arc.sagitta = sagitta;
+    }
     return true;
 }
 

@@ -34,6 +34,7 @@ class MotionHistory {
 public:
     static constexpr std::uint64_t window = 1024;
 
+    void clear() { count_ = 0; }
     void add(const PlaneMotion& motion) {
         motions_[static_cast<std::size_t>(count_++ % window)] = motion;
     }

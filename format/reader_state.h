@@ -25,6 +25,8 @@ class Reader::Implementation {
 public:
     Implementation(int descriptor, std::string name, ReadOptions options)
         : blocks_(descriptor), name_(std::move(name)), options_(options) {}
+    Implementation(const Implementation&) = delete;
+    Implementation& operator=(const Implementation&) = delete;
 
     bool open();
     // Null: the end, or an error.
@@ -77,7 +79,8 @@ private:
     bool sought_ = false;        // counts and index are not known from the start
     LayerRecord record_;
     BlockHead layer_head_;
-    ChunkDecoder decoder_;
+    MotionHistory history_;
+    ChunkDecoder decoder_{history_};
     std::uint64_t decoder_offset_ = 0;             // of its first byte in the file
     std::uint32_t layers_ = 0, whole_layers_ = 0;  // begun, and read to their end
     std::uint32_t layer_chunks_ = 0;

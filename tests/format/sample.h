@@ -73,7 +73,7 @@ private:
     }
 
     void call() {
-        switch (pick(13)) {
+        switch (pick(14)) {
             case 0:
             case 1:
             case 2:
@@ -92,8 +92,34 @@ private:
                 return path();
             case 10:
                 return wipe();
+            case 11:
+                return walls();
             default:
                 return setting();
+        }
+    }
+
+    // Rings of arcs and chords inside each other.
+    void walls() {
+        const double center_x = x_mm_, center_y = y_mm_, outer = uniform(2, 20);
+        const int pieces = 4 + pick(20), rings = 1 + pick(3);
+        const double turn = 2 * std::numbers::pi / pieces;
+        for (int ring = 0; ring < rings; ++ring) {
+            const double radius = outer - 0.45 * ring;
+            for (int i = 0; i <= pieces; ++i) {
+                x_mm_ = center_x + radius * std::cos(i * turn);
+                y_mm_ = center_y + radius * std::sin(i * turn);
+                const double sagitta = i % 3 == 0 ? 0 : radius * (1 - std::cos(turn / 2));
+                if (i == 0)
+                    encoder_.travel_to(x_mm_, y_mm_);
+                else
+                    sagitta == 0 ? encoder_.line_to(x_mm_, y_mm_)
+                                 : encoder_.arc_to(x_mm_, y_mm_, sagitta);
+                const std::size_t kind = i == 0         ? kind_of<Travel>()
+                                         : sagitta == 0 ? kind_of<Line>()
+                                                        : kind_of<Arc>();
+                expected.push_back({kind, x_mm_, y_mm_, z_mm_, sagitta, 0, false});
+            }
         }
     }
 
