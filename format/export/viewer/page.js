@@ -404,7 +404,7 @@ lyr.page = (() => {
             if (!more) {
                 ++this.state.revision; // ranges of colours are known now
                 if (print.damaged.size > 0) this.notice([...print.damaged.values()][0] +
-                    (print.damaged.size > 1 ? ` (and ${print.damaged.size - 1} more layers)` : ""), true);
+                    (print.damaged.size > 1 ? ` (and ${print.damaged.size - 1} more)` : ""), true);
                 if (this.space.every > 1 && this.space.available)
                     this.notice(`A large print: in 3D every ${this.space.every}th layer is drawn.`);
             }
