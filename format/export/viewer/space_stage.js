@@ -9,6 +9,7 @@ lyr.spaceStage = (() => {
     const building_ms = 400; // between two pictures of a print that is not all there yet
     // Instances for one frame: so many that the card takes no longer than slow_ms.
     const firstBudget = 60000, leastBudget = 30000, slow_ms = 60, fast_ms = 25;
+    const upright = new Set([0, 1, 2, 3, 4, 13, 15, 16, 18]); // roles that make walls, in the shader's eyes
     const onScreenShare = 0.96; // of strands in dark colours, so that they stand out of a dark stage
 
     class SpaceStage {
@@ -85,7 +86,7 @@ lyr.spaceStage = (() => {
                 if (coloring.hidden.has(style.role)) return [0, 0, 0, 0];
                 const color = coloring.mode === "time" ? lyr.colors.rgb(lyr.colors.byRole[style.role])
                     : coloring.of(style, 0);
-                return [...color.map((v) => v * onScreenShare), 255];
+                return [...color.map((v) => v * onScreenShare), upright.has(style.role) ? 255 : 224];
             });
             const layers = coloring.mode !== "time" ? []
                 : this.print.file.layers.map((_, i) => [...coloring.of(null, i), 255]);
