@@ -9,7 +9,7 @@ lyr.spaceStage = (() => {
     const building_ms = 400; // between two pictures of a print that is not all there yet
     // Instances for one frame: so many that the card takes no longer than slow_ms.
     const firstBudget = 60000, leastBudget = 30000, slow_ms = 60, fast_ms = 25;
-    const upright = new Set([0, 1, 2, 3, 4, 13, 15, 16, 18]); // roles that make walls, in the shader's eyes
+    const upright = new Set([0, 1, 2, 3, 4, 7, 13, 15, 16, 18]); // roles that make walls, in the shader's eyes
     const onScreenShare = 0.96; // of strands in dark colours, so that they stand out of a dark stage
 
     class SpaceStage {

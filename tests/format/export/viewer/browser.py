@@ -38,6 +38,7 @@ class Browser:
             answer = self._send("POST", "/session", {"capabilities": {"alwaysMatch": {
                 "goog:chromeOptions": options, "goog:loggingPrefs": {"browser": "ALL", "performance": "ALL"}}}})
             self.session = f"/session/{answer['sessionId']}"
+            self._send("POST", self.session + "/timeouts", {"script": 1000 * REQUEST_S, "pageLoad": 1000 * REQUEST_S})
             self.size(width, height)
         except BaseException:
             self._end()
