@@ -30,6 +30,19 @@ lyr.spaceStage = (() => {
             this.finished = false; // all of it is shown
         }
 
+        // The system takes the card away from pages in the background; `request` asks for a frame when it is back.
+        watchLoss(request) {
+            this.canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
+            this.canvas.addEventListener("webglcontextrestored", () => {
+                for (const stream of this.strands.streams)
+                    for (const page of stream.pages) Object.assign(page, {buffer: null, fresh: true});
+                this.view = lyr.spaceView.create(this.canvas, this.strands, this.print.box());
+                this.fence = this.job = null;
+                this.key = this.coloredFor = "";
+                request();
+            });
+        }
+
         resize(width, height, ratio) {
             this.ratio = ratio;
             this.height = height;
@@ -110,8 +123,10 @@ lyr.spaceStage = (() => {
             };
         }
 
-        // Builds for some time, and draws what can be drawn without waiting for the graphics card. True: there is more to draw, now or soon.
+        // Builds for some time, and draws what can be drawn without waiting for the graphics card. True: there is more
+        // to draw, now or soon.
         draw(build_ms) {
+            if (this.view.gl.isContextLost()) return false;
             const begun_ms = performance.now(), state = this.state();
             const building = this.build(build_ms);
             if (!building || begun_ms - (this.builtAt_ms ?? -Infinity) > building_ms) {

@@ -68,7 +68,8 @@ lyr.spaceView = (() => {
             return {array, count: points.length / 3};
         }
 
-        // Colours [r, g, b, a] (0 to 255) of all styles (a = 0: hidden, 128: a travel, 224: a strand that lies, 255: one of a wall) and layers.
+        // Colours [r, g, b, a] (0 to 255) of all styles (a = 0: hidden, 128: a travel, 224: a strand that lies, 255: one
+        // of a wall) and layers.
         setColors(styles, layers) {
             const gl = this.gl;
             [styles, layers].forEach((list, unit) => {
@@ -134,7 +135,8 @@ lyr.spaceView = (() => {
             return out;
         }
 
-        // What is to be drawn of whole layers and, of the last, what is printed: [{stream, segments, page, first, count}].
+        // What is to be drawn of whole layers and, of the last, what is printed: [{stream, segments, page, first,
+        // count}].
         plan(wanted, matrix, mmPerPixel) {
             const out = [];
             for (const stream of this.strands.streams) {
@@ -156,7 +158,8 @@ lyr.spaceView = (() => {
                 if (stream.travel) continue;
                 if (stream.inside) {
                     if (wanted.inLast || last < 0) continue;
-                    this.addRuns(out, stream, stream.layerStarts[last], stream.layerStarts[last + 1], matrix, mmPerPixel);
+                    this.addRuns(out, stream, stream.layerStarts[last], stream.layerStarts[last + 1], matrix,
+                        mmPerPixel);
                     continue;
                 }
                 for (let layer = last; layer >= wanted.first; layer -= every)

@@ -87,7 +87,7 @@ def drawn_as_the_file_says(test, browser):
     """Every layer has as many motions as the reader finds; of some, each motion is looked at."""
     for name in [*test.prints, "large"]:
         in_space = name != "large"
-        test.show(browser, name, view="" if in_space else "#2d")
+        test.show(browser, name)
         layers = browser.run("lyr.shown.print.layerCount")
         heads = subprocess.run([test.tool, "heads", test.path(name + ".lyr")], check=True, capture_output=True,
                                text=True).stdout.splitlines()
@@ -95,10 +95,11 @@ def drawn_as_the_file_says(test, browser):
         mine = browser.run("lyr.shown.print.file.layers.map((head, i) => [head.operations,"
                            " Math.round(head.estimate_s * 1000), lyr.shown.print.layer(i).motions.count])")
         check([" ".join(map(str, head)) for head in mine] == heads, name, "has other layers than the reader says")
-        for layer in range(0, layers, max(1, layers // (11 if in_space else 2))):
+        for layer in range(0, layers, max(1, layers // (6 if in_space else 2))):
             motions = drawing.motions_of(test.tool, test.path(name + ".lyr"), layer)
             drawing.compare_plan(browser.run(f"lyr.drawn({layer}, {drawing.SCALE})"), motions)
             if in_space:
+                browser.run("lyr.shown.space.build(Infinity);")
                 drawing.compare_space(browser.run(f"lyr.drawnInSpace({layer})"), motions)
         quiet(browser, name)
 
@@ -144,7 +145,8 @@ def arcs_stay_arcs(test, browser):
                 const options = {coloring: page.print.coloring, quantum_mm: q, begin: i, end: i + 1};
                 for (const _ of lyr.planView.strokes(context, frame, layer, options)) void _;
                 for (const [x, y] of points) {
-                    const dx = frame.x_mm + (x - 500) / scale - arc.x * q, dy = frame.y_mm - (y - 400) / scale - arc.y * q;
+                    const dx = frame.x_mm + (x - 500) / scale - arc.x * q;
+                    const dy = frame.y_mm - (y - 400) / scale - arc.y * q;
                     worst = Math.max(worst, Math.abs(Math.hypot(dx, dy) - arc.radius * q) * scale);
                     ++seen;
                 }
@@ -239,7 +241,8 @@ def measuring_snaps(test, browser):
             const at = {x: arc.x + arc.radius, y: arc.y};
             page.plan.center = {x: (arc.x + at.x) / 2 * q, y: arc.y * q};
             page.plan.scale = 200 / (arc.radius * q);
-            return {center: page.plan.toScreen(arc.x * q, arc.y * q), from: page.plan.toScreen(m.fromX[i] * q, m.fromY[i] * q),
+            return {center: page.plan.toScreen(arc.x * q, arc.y * q),
+                from: page.plan.toScreen(m.fromX[i] * q, m.fromY[i] * q),
                 rim: page.plan.toScreen(at.x * q, at.y * q), radius_mm: arc.radius * q, i};
         }
         return null;""")
@@ -269,7 +272,7 @@ def fingers_work(test, browser):
     check(wide[0] <= wide[1], "the page is", wide, "wide")
     small = browser.run("""
         const small = [];
-        for (const e of document.querySelectorAll("header button, header select, #layer-slider, footer button, #range")) {
+        for (const e of document.querySelectorAll("header button, select, #layer-slider, footer button, #range")) {
             const b = e.getBoundingClientRect();
             if (b.width === 0) continue;
             if (b.height < 34 || b.right > innerWidth || b.bottom > innerHeight) small.push(e.id + JSON.stringify(b));
@@ -326,6 +329,20 @@ def pictures(test, browser):
     dark = browser.run("lyr.shown.plan.context.getImageData(2, 2, 1, 1).data[0]")
     check(dark < 60, "in the dark the stage is", dark)
     browser.scheme("light")
+
+
+def a_lost_card_comes_back(test, browser):
+    test.show(browser, "small", view="")
+    browser.wait(DRAWN)
+    before = browser.run("lyr.shown.space.stats.instances")
+    browser.run("window.loss = lyr.shown.space.view.gl.getExtension('WEBGL_lose_context'); loss.loseContext();")
+    browser.wait("lyr.shown.space.view.gl.isContextLost()")
+    browser.keys(ARROW_DOWN)
+    browser.run(FRAMES)
+    browser.keys(ARROW_UP)
+    browser.run("loss.restoreContext();")
+    browser.wait("!lyr.shown.space.view.gl.isContextLost() && lyr.shown.space.key !== '' && lyr.shown.space.finished")
+    check(browser.run("lyr.shown.space.stats.instances") == before, "after a loss less is drawn")
 
 
 def a_large_print_is_smooth(test, browser):
@@ -409,7 +426,8 @@ def damage_is_told(test, browser):
     end = page.index("</script>", begin)
     data = bytearray(base64.b64decode(page[begin:end]))
     test.show(browser, "kinds")
-    places = browser.run("[lyr.shown.print.file.layers[6].chunksAt + 200, lyr.shown.print.file.layers[8].chunksAt - 20]")
+    places = browser.run("const heads = lyr.shown.print.file.layers;"
+                         "return [heads[6].chunksAt + 200, heads[8].chunksAt - 20];")
     for place in places:
         data[place] ^= 4
     with open(test.path("damaged.html"), "w", encoding="utf-8") as file:
@@ -438,7 +456,8 @@ def without_webgl(test):
 
 
 TESTS = [drawn_as_the_file_says, strands_have_their_colour, arcs_stay_arcs, keys_work, time_runs, statistics_add_up,
-         roles_can_be_hidden, measuring_snaps, every_flipped_bit_is_found, damage_is_told, fingers_work, pictures, a_large_print_is_smooth]
+         roles_can_be_hidden, measuring_snaps, every_flipped_bit_is_found, damage_is_told, fingers_work, pictures,
+         a_lost_card_comes_back, a_large_print_is_smooth]
 
 
 def main():
