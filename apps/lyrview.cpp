@@ -55,7 +55,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
               "Draw this layer, 1 to the number of layers");
     add_file(app, "-o,--output", arguments.output_path,
              "What to write: a page that shows the print (.html), or with --layer a picture (SVG); "
-             "without it, or as -: the picture goes to standard output");
+             "without it, or as -: standard output");
     add_flag(app, "--no-travel", arguments.no_travel, "Leave out the ways without extrusion");
     add_checks(app, arguments.checks);
 }

@@ -119,7 +119,11 @@ lyr.bytes = (() => {
 
     // The bytes that a text in base64 stands for.
     function fromBase64(text) {
-        if (Uint8Array.fromBase64) return Uint8Array.fromBase64(text);
+        return Uint8Array.fromBase64 ? Uint8Array.fromBase64(text) : pieceByPiece(text);
+    }
+
+    // For browsers without that.
+    function pieceByPiece(text) {
         const clean = text.replace(/\s+/g, "");
         const padding = clean.endsWith("==") ? 2 : clean.endsWith("=") ? 1 : 0;
         const out = new Uint8Array(clean.length / 4 * 3 - padding);
@@ -131,5 +135,5 @@ lyr.bytes = (() => {
         return out;
     }
 
-    return {crc32c, u16, u24, u32, u64, Cursor, fromBase64};
+    return {crc32c, u16, u24, u32, u64, Cursor, fromBase64, pieceByPiece};
 })();

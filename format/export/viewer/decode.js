@@ -335,7 +335,7 @@ lyr.decode = (() => {
             if (operations !== head.operations)
                 throw new Damage("it has another number of operations than it says");
         } catch (error) {
-            if (!(error instanceof Damage)) throw error;
+            if (!(error instanceof Damage) || head.damage) throw error;
             throw new Damage(`layer ${index + 1}, chunk ${chunk + 1} of ${head.chunks}: ${error.message}`);
         }
         return {index, head, motions: decoder.motions, events: decoder.events};

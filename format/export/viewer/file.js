@@ -94,10 +94,8 @@ lyr.file = (() => {
             this.readPrologue();
             const first = this.readFront();
             const offsets = this.readIndex() ?? this.findLayers(first);
-            this.layers = offsets.map((offset) => this.readLayerHead(offset));
-            this.layers.forEach((layer, i) => {
-                if (layer.index !== i) throw new Damage(`layer ${i + 1} says that it is layer ${layer.index + 1}`);
-            });
+            this.layers = [];
+            for (const offset of offsets) this.layers.push(this.headOrGap(offset));
         }
 
         readPrologue() {
@@ -163,6 +161,27 @@ lyr.file = (() => {
             return out;
         }
 
+        // A layer's head or, where it is damaged, what stands for it: no chunk, at the height of the layer before.
+        headOrGap(offset) {
+            const index = this.layers.length, before = this.layers[index - 1];
+            try {
+                const head = this.readLayerHead(offset);
+                if (head.index !== index) throw new Damage(`it says that it is layer ${head.index + 1}`);
+                return head;
+            } catch (error) {
+                if (!(error instanceof Damage)) throw error;
+                const origin = {x: 0, y: 0, z: 0};
+                return {
+                    ...before ?? {
+                        start: origin, low: origin, high: origin, z_mm: 0, height_mm: 0, heaters: [], fans: [], tool: 0,
+                        object: 0, travelSpeed_mm_s: 0, travelAcceleration_mm_s2: 0, retracted_mm: 0,
+                    },
+                    index, estimate_s: 0, chunks: 0, operations: 0, extruded_mm: 0, travel_mm: 0, volume_mm3: 0,
+                    damage: `layer ${index + 1}: ${error.message}`,
+                };
+            }
+        }
+
         readLayerHead(offset) {
             const block = blockAt(this.bytes, offset);
             if (block.type !== blockType.layer) throw new Damage(`there is no layer at byte ${offset}`);
@@ -174,6 +193,7 @@ lyr.file = (() => {
         // Calls use(cursor, operations) for each chunk of a layer, in order.
         eachChunk(index, use) {
             const head = this.layers[index];
+            if (head.damage) throw new Damage(head.damage);
             for (let at = head.chunksAt, number = 0; number < head.chunks;) {
                 const block = blockAt(this.bytes, at);
                 at = block.next;

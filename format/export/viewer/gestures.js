@@ -51,7 +51,8 @@ lyr.gestures = (() => {
         };
         element.addEventListener("pointerup", end);
         element.addEventListener("pointercancel", end);
-        element.addEventListener("pointerleave", () => use.leave());
+        // A finger leaves whenever it is lifted; what it tapped stays.
+        element.addEventListener("pointerleave", (event) => event.pointerType === "mouse" && use.leave());
         element.addEventListener("contextmenu", (event) => event.preventDefault());
         element.addEventListener("wheel", (event) => {
             event.preventDefault();

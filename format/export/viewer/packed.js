@@ -1,5 +1,6 @@
-// Packed runs: lines and arcs stored as differences from what the motions before let expect. The expectations are worked
-// out in doubles, each operation rounded by itself, in the order of docs/lyr-format.md: JavaScript's numbers do just that.
+// Packed runs: lines and arcs stored as differences from what the motions before let expect. The expectations are
+// worked out in doubles, each operation rounded by itself, in the order of docs/lyr-format.md: JavaScript's numbers do
+// just that.
 "use strict";
 
 lyr.packed = (() => {

@@ -81,6 +81,7 @@ lyr.page = (() => {
             this.fillChoices();
             byId("time").addEventListener("input", (event) => this.setTime(Number(event.target.value)));
             for (const [name, stage] of [["plan", this.plan], ["space", this.space]]) this.listenOn(byId(name), stage);
+            this.space.watchLoss(() => this.request());
             lyr.keys.listen(this);
             lyr.keys.fillHelp(byId("help"));
             new ResizeObserver(() => this.resize()).observe(byId("stage"));
@@ -110,8 +111,8 @@ lyr.page = (() => {
             };
             const tap = and(stage.tap);
             lyr.gestures.listen(canvas, {
-                pan: and(stage.pan), zoom: and(stage.zoom), tap: (x, y) => this.closeSheet() || tap(x, y), hover: and(stage.hover),
-                leave: and(stage.leave),
+                pan: and(stage.pan), zoom: and(stage.zoom), tap: (x, y) => this.closeSheet() || tap(x, y),
+                hover: and(stage.hover), leave: and(stage.leave),
             });
         }
 
@@ -332,7 +333,8 @@ lyr.page = (() => {
             const {dx_mm, dy_mm, length_mm} = lyr.planMarks.distance(points, this.print.quantum_mm);
             return [
                 element("div", {class: "result"}, `${fixed(length_mm, 3)} mm`),
-                element("p", {}, `x ${fixed(dx_mm, 3)}, y ${fixed(dy_mm, 3)} mm, ${points[0].what} to ${points[1].what}`),
+                element("p", {}, `x ${fixed(dx_mm, 3)}, y ${fixed(dy_mm, 3)} mm, ` +
+                    `${points[0].what} to ${points[1].what}`),
             ];
         }
 
@@ -404,7 +406,7 @@ lyr.page = (() => {
             if (!more) {
                 ++this.state.revision; // ranges of colours are known now
                 if (print.damaged.size > 0) this.notice([...print.damaged.values()][0] +
-                    (print.damaged.size > 1 ? ` (and ${print.damaged.size - 1} more layers)` : ""), true);
+                    (print.damaged.size > 1 ? ` (and ${print.damaged.size - 1} more)` : ""), true);
                 if (this.space.every > 1 && this.space.available)
                     this.notice(`A large print: in 3D every ${this.space.every}th layer is drawn.`);
             }

@@ -61,7 +61,7 @@ lyr.print = (() => {
         // {low: [x, y, z], high: [...]} of all motions, mm.
         box() {
             const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
-            for (const layer of this.file.layers)
+            for (const layer of this.file.layers.filter((head) => !head.damage))
                 ["x", "y", "z"].forEach((axis, i) => {
                     low[i] = Math.min(low[i], layer.low[axis] * this.quantum_mm);
                     high[i] = Math.max(high[i], layer.high[axis] * this.quantum_mm);

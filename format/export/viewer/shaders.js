@@ -1,5 +1,6 @@
 // The programs on the graphics card. An instance is a line or an arc; its vertices are made here, along the true arc, in
-// as many segments as the zoom asks for: as a ribbon that faces the eye where strands are a few pixels wide, and as a
+// as many segments as the zoom asks for: as a ribbon bent towards the eye, so that neighbours meet where they
+// should, where strands are a few pixels wide, and as a
 // tube with the strand's section where they are wider.
 "use strict";
 
@@ -24,9 +25,6 @@ uniform bool u_by_layer;
 uniform highp sampler2D u_style_colors;
 uniform highp sampler2D u_layer_colors;
 out vec3 v_normal;
-out vec3 v_face;
-out float v_across;
-out float v_relief;         // how round a ribbon looks: less where strands are a pixel or two
 flat out vec3 v_color;
 
 vec4 entry(highp sampler2D table, uint number) {
@@ -38,8 +36,12 @@ void main() {
     v_color = u_by_layer && color.a > 0.75 ? entry(u_layer_colors, a_layer).rgb : color.rgb;
     int ring, side;
     if (u_sides == 0) {
-        ring = gl_VertexID >> 1;
-        side = gl_VertexID & 1;
+        // Two strips, left and right of the ridge, with two vertices between them that make no triangle.
+        int strip = 2 * (u_segments + 1);
+        int at_vertex = gl_VertexID <= strip ? min(gl_VertexID, strip - 1) : max(gl_VertexID - strip - 2, 0);
+        bool right = gl_VertexID > strip;
+        ring = at_vertex >> 1;
+        side = (at_vertex & 1) + (right ? 1 : 0);   // left edge, ridge, right edge
     } else {
         int quad = gl_VertexID / 6, corner = gl_VertexID - 6 * quad;
         bool ahead = corner == 1 || corner == 2 || corner == 4;
@@ -80,16 +82,22 @@ void main() {
         vec3 beside = cross(along, to_eye);
         float size = length(beside);
         beside = size > 0.0 ? beside / size : across;
-        float half_width = 0.5 * length(vec2(width * dot(beside, across), height * dot(beside, up)));
-        float sign_of = side == 0 ? -1.0 : 1.0;
-        place = at + sign_of * half_width * beside;
+        vec3 face = normalize(cross(beside, along));
+        if (dot(face, to_eye) < 0.0) face = -face;
+        vec2 half_size = 0.5 * vec2(width, height);
+        vec3 off = side == 1 ? face : float(side - 1) * beside;
+        vec2 section = vec2(dot(off, across), dot(off, up));
+        place = at + length(half_size * section) * off;
         float cap = ring == 0 ? -1.0 : ring == u_segments ? 1.0 : 0.0;
         place += cap * 0.3 * width * along;
-        v_normal = beside;
-        v_face = normalize(cross(beside, along));
-        if (dot(v_face, to_eye) < 0.0) v_face = -v_face;
-        v_across = sign_of;
-        v_relief = clamp(width / (8.0 * u_pixel * length(to_eye)), 0.25, 1.0);
+        // Where strands are a pixel or two, their roundness is not seen but would flicker: there walls are lit as the
+        // surface that they make, which stands upright, and all else as one that lies.
+        float relief = clamp(width / (10.0 * u_pixel * length(to_eye)) - 0.3, 0.0, 1.0);
+        vec2 slope = section / (half_size * half_size);
+        vec3 own = normalize(normalize(slope.x * across + slope.y * up) + 0.5 * face);
+        bool upright = color.a > 0.95;
+        vec3 surface = upright ? sign(dot(across, to_eye)) * across + 0.4 * up : sign(to_eye.z) * up;
+        v_normal = normalize(mix(normalize(surface), own, relief));
     } else {
         // A rectangle with round sides.
         float angle = 6.2831853 * (float(side) + 0.5) / float(u_sides);
@@ -99,9 +107,6 @@ void main() {
         float ends = float(beyond) * 0.5, shrink = sqrt(max(0.0, 1.0 - ends * ends));
         place = at + shrink * (section.x * across + section.y * up) + 0.5 * min(width, 2.0 * height) * ends * along;
         v_normal = normalize(round_part.x * across + round_part.y * up + 1.5 * ends * along);
-        v_face = vec3(0.0);
-        v_across = 2.0;
-        v_relief = 1.0;
     }
     gl_Position = color.a > 0.0 ? u_matrix * vec4(place, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
 }`;
@@ -109,17 +114,12 @@ void main() {
     const strandFragment = `#version 300 es
 precision highp float;
 in vec3 v_normal;
-in vec3 v_face;
-in float v_across;
-in float v_relief;
 flat in vec3 v_color;
 uniform vec3 u_light;     // towards the light
 uniform float u_shade;    // 0: flat
 out vec4 o_color;
 void main() {
-    vec3 normal = v_across > 1.5 ? normalize(v_normal)
-        : normalize(v_normal * v_across * v_relief +
-                    v_face * sqrt(max(0.05, 1.0 - v_across * v_across * v_relief * v_relief)));
+    vec3 normal = normalize(v_normal);
     float light = 0.62 + 0.42 * max(0.0, dot(normal, u_light)) + 0.08 * normal.z;
     o_color = vec4(v_color * mix(1.0, light, u_shade), 1.0);
 }`;

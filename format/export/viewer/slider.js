@@ -40,7 +40,8 @@ lyr.slider = (() => {
 
         layerAt(event) {
             const box = this.root.querySelector(".track").getBoundingClientRect();
-            const share = this.lies() ? (event.clientX - box.left) / box.width : (box.bottom - event.clientY) / box.height;
+            const share = this.lies() ? (event.clientX - box.left) / box.width
+                : (box.bottom - event.clientY) / box.height;
             return Math.round(Math.min(1, Math.max(0, share)) * (this.count - 1));
         }
 

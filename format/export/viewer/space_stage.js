@@ -9,6 +9,7 @@ lyr.spaceStage = (() => {
     const building_ms = 400; // between two pictures of a print that is not all there yet
     // Instances for one frame: so many that the card takes no longer than slow_ms.
     const firstBudget = 60000, leastBudget = 30000, slow_ms = 60, fast_ms = 25;
+    const upright = new Set([0, 1, 2, 3, 4, 7, 13, 15, 16, 18]); // roles that make walls, in the shader's eyes
     const onScreenShare = 0.96; // of strands in dark colours, so that they stand out of a dark stage
 
     class SpaceStage {
@@ -27,6 +28,19 @@ lyr.spaceStage = (() => {
             this.budget = firstBudget;
             this.job = null; // a picture that takes several frames
             this.finished = false; // all of it is shown
+        }
+
+        // The system takes the card away from pages in the background; `request` asks for a frame when it is back.
+        watchLoss(request) {
+            this.canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
+            this.canvas.addEventListener("webglcontextrestored", () => {
+                for (const stream of this.strands.streams)
+                    for (const page of stream.pages) Object.assign(page, {buffer: null, fresh: true});
+                this.view = lyr.spaceView.create(this.canvas, this.strands, this.print.box());
+                this.fence = this.job = null;
+                this.key = this.coloredFor = "";
+                request();
+            });
         }
 
         resize(width, height, ratio) {
@@ -85,7 +99,7 @@ lyr.spaceStage = (() => {
                 if (coloring.hidden.has(style.role)) return [0, 0, 0, 0];
                 const color = coloring.mode === "time" ? lyr.colors.rgb(lyr.colors.byRole[style.role])
                     : coloring.of(style, 0);
-                return [...color.map((v) => v * onScreenShare), 255];
+                return [...color.map((v) => v * onScreenShare), upright.has(style.role) ? 255 : 224];
             });
             const layers = coloring.mode !== "time" ? []
                 : this.print.file.layers.map((_, i) => [...coloring.of(null, i), 255]);
@@ -109,8 +123,10 @@ lyr.spaceStage = (() => {
             };
         }
 
-        // Builds for some time, and draws what can be drawn without waiting for the graphics card. True: there is more to draw, now or soon.
+        // Builds for some time, and draws what can be drawn without waiting for the graphics card. True: there is more
+        // to draw, now or soon.
         draw(build_ms) {
+            if (this.view.gl.isContextLost()) return false;
             const begun_ms = performance.now(), state = this.state();
             const building = this.build(build_ms);
             if (!building || begun_ms - (this.builtAt_ms ?? -Infinity) > building_ms) {

@@ -18,7 +18,7 @@ lyr.spaceView = (() => {
     const wantedSamples = 4; // of a pixel
 
     function vertexCount(sides, segments) {
-        return sides ? 6 * sides * (segments + 4) : 2 * (segments + 1);
+        return sides ? 6 * sides * (segments + 4) : 4 * (segments + 1) + 2;
     }
 
     function compile(gl, vertex, fragment) {
@@ -68,7 +68,8 @@ lyr.spaceView = (() => {
             return {array, count: points.length / 3};
         }
 
-        // Colours [r, g, b, a] (0 to 255) of all styles (a = 0: hidden) and layers.
+        // Colours [r, g, b, a] (0 to 255) of all styles (a = 0: hidden, 128: a travel, 224: a strand that lies, 255: one
+        // of a wall) and layers.
         setColors(styles, layers) {
             const gl = this.gl;
             [styles, layers].forEach((list, unit) => {
@@ -134,12 +135,15 @@ lyr.spaceView = (() => {
             return out;
         }
 
-        // What is to be drawn of whole layers and, of the last, what is printed: [{stream, segments, page, first, count}].
+        // What is to be drawn of whole layers and, of the last, what is printed: [{stream, segments, page, first,
+        // count}].
         plan(wanted, matrix, mmPerPixel) {
             const out = [];
             for (const stream of this.strands.streams) {
                 if (stream.travel && !wanted.travels) continue;
-                const begin = stream.layerStarts[Math.min(wanted.first, this.strands.layers)];
+                // Travels of all layers would hide the print.
+                const first = stream.travel ? wanted.last : wanted.first;
+                const begin = stream.layerStarts[Math.min(first, this.strands.layers)];
                 const whole = Math.min(wanted.inLast ? wanted.last : wanted.last + 1, this.strands.layers);
                 const end = stream.layerStarts[whole] + (wanted.inLast?.get(stream) ?? 0);
                 this.addRuns(out, stream, begin, end, matrix, mmPerPixel);
@@ -154,7 +158,8 @@ lyr.spaceView = (() => {
                 if (stream.travel) continue;
                 if (stream.inside) {
                     if (wanted.inLast || last < 0) continue;
-                    this.addRuns(out, stream, stream.layerStarts[last], stream.layerStarts[last + 1], matrix, mmPerPixel);
+                    this.addRuns(out, stream, stream.layerStarts[last], stream.layerStarts[last + 1], matrix,
+                        mmPerPixel);
                     continue;
                 }
                 for (let layer = last; layer >= wanted.first; layer -= every)

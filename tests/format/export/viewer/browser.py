@@ -15,8 +15,8 @@ REQUEST_S = 120
 
 # Nothing of the browser's own may go to a network; drawing is by software, as on a machine without a card.
 FLAGS = [
-    "--headless=new", "--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run",
-    "--disable-background-networking", "--disable-component-update", "--disable-sync", "--disable-default-apps",
+    "--headless=new", "--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader", "--disable-quic",
+    "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync", "--disable-default-apps",
     "--disable-extensions", "--disable-dev-shm-usage", "--hide-scrollbars", "--force-color-profile=srgb",
 ]
 
@@ -27,10 +27,11 @@ class Browser:
     def __init__(self, width=1280, height=800, flags=()):
         driver, chromium = shutil.which("chromedriver"), shutil.which("chromium")
         if not driver or not chromium:
-            raise SystemExit("the viewer's test needs Debian's packages chromium and chromium-driver (tools/setup --test)")
+            raise SystemExit("the viewer's test needs Debian's chromium and chromium-driver (tools/setup --test)")
         self.opened = 0
         self.profile = tempfile.mkdtemp(prefix="lyr-viewer-")
-        self.driver = subprocess.Popen([driver, "--port=0"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        self.driver = subprocess.Popen([driver, "--port=0"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+                                       text=True)
         try:
             self.root = f"http://127.0.0.1:{self._port()}"
             options = {"binary": chromium,
@@ -38,6 +39,7 @@ class Browser:
             answer = self._send("POST", "/session", {"capabilities": {"alwaysMatch": {
                 "goog:chromeOptions": options, "goog:loggingPrefs": {"browser": "ALL", "performance": "ALL"}}}})
             self.session = f"/session/{answer['sessionId']}"
+            self._send("POST", self.session + "/timeouts", {"script": 1000 * REQUEST_S, "pageLoad": 1000 * REQUEST_S})
             self.size(width, height)
         except BaseException:
             self._end()
@@ -83,7 +85,8 @@ class Browser:
         self._send("POST", self.session + "/url", {"url": f"file://{os.path.abspath(path)}?{self.opened}{fragment}"})
 
     def run(self, script, *values):
-        """The value of a JavaScript expression or, where there is a semicolon, of a function's body; promises are waited for."""
+        """The value of a JavaScript expression or, where there is a semicolon, of a function's body; promises are
+        waited for."""
         body = script if ";" in script else f"return {script}"
         return self._send("POST", self.session + "/execute/sync", {"script": body, "args": list(values)})
 
@@ -96,7 +99,8 @@ class Browser:
         raise AssertionError(f"did not come true in {seconds} s: {condition}")
 
     def size(self, width, height, phone=False, ratio=1):
-        self.cdp("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=ratio, mobile=phone)
+        self.cdp("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=ratio,
+                 mobile=phone)
         self.cdp("Emulation.setTouchEmulationEnabled", enabled=phone)
 
     def scheme(self, name):

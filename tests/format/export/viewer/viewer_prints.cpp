@@ -1,7 +1,7 @@
 // For the viewer's test, which is no C++: prints to look at, and what the reader says of a print.
 //
-//     viewer_prints make FOLDER        writes kinds.lyr (every kind of operation, at random) and large.lyr (200 layers,
-//                                      a million operations)
+//     viewer_prints make FOLDER        writes kinds.lyr (every kind of operation, at random), small.lyr (likewise, a few
+//                                      kB) and large.lyr (200 layers, a million operations)
 //     viewer_prints dump FILE LAYER    a layer's motions, one a line, in quanta: kind, role, from, to, and of an arc the
 //                                      sagitta, of a circle its centre and 1 if counter-clockwise; then style
 //     viewer_prints heads FILE         a line for each layer: operations, estimated ms, and motions of the layer
@@ -43,11 +43,11 @@ void finish(Writer& writer) {
     if (const auto totals = writer.finish(); !totals) fail(to_string(totals.error()));
 }
 
-void make_kinds(const std::string& path) {
+void make_kinds(const std::string& path, std::uint32_t layers, int calls) {
     const Quantum quantum{1000};
     Writer writer = begin(path, quantum, "kinds <of> \"operations\" & more");
-    for (std::uint32_t seed = 1; seed <= 12; ++seed)
-        append(writer, test::RandomLayer(seed, 0.2 * seed, quantum, 400).finish());
+    for (std::uint32_t seed = 1; seed <= layers; ++seed)
+        append(writer, test::RandomLayer(seed, 0.2 * seed, quantum, calls).finish());
     finish(writer);
 }
 
@@ -183,7 +183,8 @@ int main(int argc, char** argv) {
     const std::string command = argc > 2 ? argv[1] : "";
     const std::string path = argc > 2 ? argv[2] : "";
     if (command == "make" && argc == 3) {
-        make_kinds(path + "/kinds.lyr");
+        make_kinds(path + "/kinds.lyr", 12, 400);
+        make_kinds(path + "/small.lyr", 3, 20);
         make_large(path + "/large.lyr");
     } else if (command == "dump" && argc == 4) {
         dump(path, static_cast<std::uint32_t>(std::strtoul(argv[3], nullptr, 10)));

@@ -84,8 +84,10 @@ def quiet(browser, name):
 
 
 def drawn_as_the_file_says(test, browser):
-    for name in test.prints:
-        test.show(browser, name, view="")
+    """Every layer has as many motions as the reader finds; of some, each motion is looked at."""
+    for name in [*test.prints, "large"]:
+        in_space = name != "large"
+        test.show(browser, name)
         layers = browser.run("lyr.shown.print.layerCount")
         heads = subprocess.run([test.tool, "heads", test.path(name + ".lyr")], check=True, capture_output=True,
                                text=True).stdout.splitlines()
@@ -93,10 +95,12 @@ def drawn_as_the_file_says(test, browser):
         mine = browser.run("lyr.shown.print.file.layers.map((head, i) => [head.operations,"
                            " Math.round(head.estimate_s * 1000), lyr.shown.print.layer(i).motions.count])")
         check([" ".join(map(str, head)) for head in mine] == heads, name, "has other layers than the reader says")
-        for layer in range(0, layers, max(1, layers // 11)):
+        for layer in range(0, layers, max(1, layers // (6 if in_space else 2))):
             motions = drawing.motions_of(test.tool, test.path(name + ".lyr"), layer)
             drawing.compare_plan(browser.run(f"lyr.drawn({layer}, {drawing.SCALE})"), motions)
-            drawing.compare_space(browser.run(f"lyr.drawnInSpace({layer})"), motions)
+            if in_space:
+                browser.run("lyr.shown.space.build(Infinity);")
+                drawing.compare_space(browser.run(f"lyr.drawnInSpace({layer})"), motions)
         quiet(browser, name)
 
 
@@ -141,7 +145,8 @@ def arcs_stay_arcs(test, browser):
                 const options = {coloring: page.print.coloring, quantum_mm: q, begin: i, end: i + 1};
                 for (const _ of lyr.planView.strokes(context, frame, layer, options)) void _;
                 for (const [x, y] of points) {
-                    const dx = frame.x_mm + (x - 500) / scale - arc.x * q, dy = frame.y_mm - (y - 400) / scale - arc.y * q;
+                    const dx = frame.x_mm + (x - 500) / scale - arc.x * q;
+                    const dy = frame.y_mm - (y - 400) / scale - arc.y * q;
                     worst = Math.max(worst, Math.abs(Math.hypot(dx, dy) - arc.radius * q) * scale);
                     ++seen;
                 }
@@ -236,7 +241,8 @@ def measuring_snaps(test, browser):
             const at = {x: arc.x + arc.radius, y: arc.y};
             page.plan.center = {x: (arc.x + at.x) / 2 * q, y: arc.y * q};
             page.plan.scale = 200 / (arc.radius * q);
-            return {center: page.plan.toScreen(arc.x * q, arc.y * q), from: page.plan.toScreen(m.fromX[i] * q, m.fromY[i] * q),
+            return {center: page.plan.toScreen(arc.x * q, arc.y * q),
+                from: page.plan.toScreen(m.fromX[i] * q, m.fromY[i] * q),
                 rim: page.plan.toScreen(at.x * q, at.y * q), radius_mm: arc.radius * q, i};
         }
         return null;""")
@@ -266,7 +272,7 @@ def fingers_work(test, browser):
     check(wide[0] <= wide[1], "the page is", wide, "wide")
     small = browser.run("""
         const small = [];
-        for (const e of document.querySelectorAll("header button, header select, #layer-slider, footer button, #range")) {
+        for (const e of document.querySelectorAll("header button, select, #layer-slider, footer button, #range")) {
             const b = e.getBoundingClientRect();
             if (b.width === 0) continue;
             if (b.height < 34 || b.right > innerWidth || b.bottom > innerHeight) small.push(e.id + JSON.stringify(b));
@@ -283,6 +289,14 @@ def fingers_work(test, browser):
     center = browser.run("lyr.shown.plan.center.x")
     browser.pointer([(x, y), "down", (x + 30, y), (x + 60, y), "up"], kind="touch")
     check(browser.run("lyr.shown.plan.center.x") < center, "a finger does not move the layer")
+    wall = browser.run("""
+        const page = lyr.shown, m = page.print.layer(page.state.high).motions, q = page.print.quantum_mm;
+        const i = [...m.kind].findIndex((kind, i) => kind <= 1 && m.length(i) * q > 1), at = m.pointAt(i, 0.5);
+        page.plan.center = {x: at.x * q, y: at.y * q};
+        return page.plan.toScreen(at.x * q, at.y * q);""")
+    browser.pointer([(box["x"] + wall["x"], box["y"] + wall["y"]), "down", "up"], kind="touch")
+    card = browser.run("[document.getElementById('card').hidden, document.getElementById('card').textContent]")
+    check(not card[0] and "mm/s" in card[1], "a tap on a strand tells", card)
     scale = browser.run("lyr.shown.plan.scale")
     browser.pointer([(x - 20, y), "down", (x - 60, y), (x - 100, y), "up"],
                     [(x + 20, y), "down", (x + 60, y), (x + 100, y), "up"], kind="touch")
@@ -315,6 +329,20 @@ def pictures(test, browser):
     dark = browser.run("lyr.shown.plan.context.getImageData(2, 2, 1, 1).data[0]")
     check(dark < 60, "in the dark the stage is", dark)
     browser.scheme("light")
+
+
+def a_lost_card_comes_back(test, browser):
+    test.show(browser, "small", view="")
+    browser.wait(DRAWN)
+    before = browser.run("lyr.shown.space.stats.instances")
+    browser.run("window.loss = lyr.shown.space.view.gl.getExtension('WEBGL_lose_context'); loss.loseContext();")
+    browser.wait("lyr.shown.space.view.gl.isContextLost()")
+    browser.keys(ARROW_DOWN)
+    browser.run(FRAMES)
+    browser.keys(ARROW_UP)
+    browser.run("loss.restoreContext();")
+    browser.wait("!lyr.shown.space.view.gl.isContextLost() && lyr.shown.space.key !== '' && lyr.shown.space.finished")
+    check(browser.run("lyr.shown.space.stats.instances") == before, "after a loss less is drawn")
 
 
 def a_large_print_is_smooth(test, browser):
@@ -358,8 +386,39 @@ def a_large_print_is_smooth(test, browser):
     quiet(browser, "a large print")
 
 
+def every_flipped_bit_is_found(test, browser):
+    """Every bit of a small print, and every truncation: each is told, and none makes the reader stumble."""
+    test.show(browser, "small")
+    missed = browser.run("""
+        const whole = lyr.shown.print.file.bytes, missed = [];
+        const found = (bytes) => {
+            try {
+                const file = new lyr.file.PrintFile(bytes);
+                for (let i = 0; i < file.layers.length; ++i) lyr.decode.layer(file, i);
+                return file.warnings.length > 0;
+            } catch (error) {
+                if (!(error instanceof lyr.file.Damage)) missed.push(error.message);
+                return true;
+            }
+        };
+        if (found(whole)) missed.push("the whole file");
+        const bits = 8 * whole.length, step = Math.max(1, bits / 20000);
+        for (let bit = 0; bit < bits; bit += step) {
+            const bytes = whole.slice(), at = Math.floor(bit);
+            bytes[at >> 3] ^= 1 << (at & 7);
+            if (!found(bytes)) missed.push(at);
+        }
+        for (let length = 0; length < whole.length; ++length)
+            if (!found(whole.slice(0, length))) missed.push(`cut at ${length}`);
+        const text = btoa(String.fromCharCode(...whole)).replace(/(.{76})/g, "$1\\n");
+        const again = lyr.bytes.pieceByPiece(text);
+        if (again.length !== whole.length || again.some((byte, i) => byte !== whole[i])) missed.push("base64");
+        return missed;""")
+    check(not missed, "not found, or found by accident:", missed[:5])
+
+
 def damage_is_told(test, browser):
-    """A flipped bit in layer 7: that layer is missing and named, the others are drawn."""
+    """Flipped bits in layer 7 and in layer 9's head: these are missing and named, the others are drawn."""
     with open(test.page("kinds"), encoding="utf-8") as file:
         page = file.read()
     mark = 'id="print-file">'
@@ -367,13 +426,17 @@ def damage_is_told(test, browser):
     end = page.index("</script>", begin)
     data = bytearray(base64.b64decode(page[begin:end]))
     test.show(browser, "kinds")
-    data[browser.run("lyr.shown.print.file.layers[6].chunksAt") + 200] ^= 4
+    places = browser.run("const heads = lyr.shown.print.file.layers;"
+                         "return [heads[6].chunksAt + 200, heads[8].chunksAt - 20];")
+    for place in places:
+        data[place] ^= 4
     with open(test.path("damaged.html"), "w", encoding="utf-8") as file:
         file.write(page[:begin] + base64.b64encode(data).decode() + page[end:])
     test.show(browser, test.path("damaged.html"))
     notice = browser.run("document.getElementById('notice').textContent")
-    check("layer 7, chunk 1" in notice and "checksum" in notice, "of a damaged layer it tells", notice)
-    check(browser.run("[lyr.shown.print.layer(6), lyr.drawn(5).strands.length > 0]") == [None, True],
+    check("layer 7, chunk 1" in notice and "checksum" in notice and "1 more" in notice, "it tells", notice)
+    check(browser.run("[lyr.shown.print.layer(6), lyr.shown.print.layer(8), lyr.drawn(9).strands.length > 0]") ==
+          [None, None, True],
           "a damaged layer is drawn, or a whole one is not")
     with open(test.path("damaged.html"), "w", encoding="utf-8") as file:
         file.write(page[:begin] + base64.b64encode(b"no print").decode() + page[end:])
@@ -393,7 +456,8 @@ def without_webgl(test):
 
 
 TESTS = [drawn_as_the_file_says, strands_have_their_colour, arcs_stay_arcs, keys_work, time_runs, statistics_add_up,
-         roles_can_be_hidden, measuring_snaps, damage_is_told, fingers_work, pictures, a_large_print_is_smooth]
+         roles_can_be_hidden, measuring_snaps, every_flipped_bit_is_found, damage_is_told, fingers_work, pictures,
+         a_lost_card_comes_back, a_large_print_is_smooth]
 
 
 def main():
