@@ -4,11 +4,10 @@
 #include <string>
 
 #include "apps/command_line.h"
+#include "apps/export_format.h"
 #include "apps/files.h"
 #include "apps/signal_watch.h"
-#include "base/replace_file.h"
 #include "format/export/statistics.h"
-#include "format/export/svg.h"
 #include "format/reader.h"
 
 namespace {
@@ -17,9 +16,16 @@ using namespace lyr;
 using namespace lyr::command_line;
 
 struct Arguments {
-    std::string lyr_path, output_path = "-";
+    std::string lyr_path, output_path = "-", to;
     std::uint32_t layer = 0;  // from 1; 0: not given
     bool info = false, no_travel = false;
+    GcodeRequest gcode;
+
+    std::vector<NamedFile> inputs() const {
+        return {{"the print", lyr_path},
+                {"the lines before the print", gcode.start_path},
+                {"the lines after the print", gcode.end_path}};
+    }
 };
 
 constexpr Program program{
@@ -28,14 +34,36 @@ constexpr Program program{
     "  lyrview part.lyr --info                               what is in it, lengths, estimates\n"
     "  lyrview part.lyr --layer 36 -o layer.svg              layer 36 as a picture, in mm\n"
     "  lyrview part.lyr --layer 36 --no-travel -o layer.svg  only what is extruded\n"
+    "  lyrview part.lyr -o part.gcode --gcode-flavor klipper as G-code, arcs as G2 and G3\n"
     "  stepc part.step -o - | lyrview - --info               from a pipe\n"
     "\n"
+    "What is written follows from the ending of the file's name, or from --to.\n"
     "Layers count from 1, the one on the bed. In the picture arcs are arcs at any zoom, strokes\n"
     "are as wide as the extrusion, and travels are thin and dashed. --info reads the whole file "
     "and\n"
     "says so if a part is damaged.\n"
     "Exit status: 0 done, 2 options, 3 input, 4 a newer file format, 6 output, 8 stopped on "
     "request.\n"};
+
+void add_gcode(CLI::App& app, GcodeRequest& gcode) {
+    const auto into = [](std::string& value) {
+        return [&value](const std::string& text) {
+            value = text;
+            return std::optional<std::string>();
+        };
+    };
+    add_text(app, "--gcode-flavor", "marlin|klipper", into(gcode.flavor),
+             "G-code for this firmware, whatever the print's gcode.flavor says");
+    add_text(
+        app, "--gcode-e", "relative|absolute", into(gcode.extrusion),
+        "Filament counted anew in each move or from the layer's start; otherwise as the print's "
+        "gcode.extrusion says");
+    add_file(app, "--gcode-start", gcode.start_path,
+             "Lines to begin the G-code with, instead of the print's gcode.start; docs/exports.md "
+             "has their {placeholders}");
+    add_file(app, "--gcode-end", gcode.end_path,
+             "Lines to end it with, instead of the print's gcode.end");
+}
 
 void add_options(CLI::App& app, Arguments& arguments) {
     add_file(app, "print", arguments.lyr_path, "The .lyr file that stepc wrote; -: standard input")
@@ -44,21 +72,32 @@ void add_options(CLI::App& app, Arguments& arguments) {
     add_count(app, "--layer", "N", arguments.layer, {1, std::numeric_limits<std::uint32_t>::max()},
               "Draw this layer, 1 to the number of layers");
     add_file(app, "-o,--output", arguments.output_path,
-             "The picture to write (SVG); without it, or as -: standard output");
+             "What to write; without it, or as -: standard output");
+    add_text(
+        app, "--to", "FORMAT",
+        [&](const std::string& text) {
+            arguments.to = text;
+            return std::optional<std::string>();
+        },
+        "What to write, whatever the file's name: " + export_format_names());
     add_flag(app, "--no-travel", arguments.no_travel, "Leave out the ways without extrusion");
+    add_gcode(app, arguments.gcode);
 }
 
-Status draw_layer(const Arguments& arguments) {
-    auto reader = format::Reader::open(arguments.lyr_path,
-                                       {.keep_thumbnails = false, .keep_configuration = false});
+Status write(const Arguments& arguments, ExportFormat format) {
+    const bool is_gcode = format == ExportFormat::gcode;
+    auto reader = format::Reader::open(
+        arguments.lyr_path, {.keep_thumbnails = is_gcode, .keep_configuration = is_gcode});
     if (!reader) return reader.error();
-    const auto svg =
-        format::layer_svg(*reader, arguments.layer - 1, {.travels = !arguments.no_travel});
-    if (!svg) return svg.error();
-    auto file = ReplaceFile::open(arguments.output_path);
-    if (!file) return file.error();
-    file->write(*svg);
-    return file->commit();
+    ExportRequest request{.output_path = arguments.output_path,
+                          .format = format,
+                          .travels = !arguments.no_travel,
+                          .gcode = arguments.gcode};
+    if (arguments.layer > 0) request.layer = arguments.layer - 1;
+    Diagnostics diagnostics;
+    const Status written = export_print(*reader, request, diagnostics);
+    show(program, diagnostics);
+    return written;
 }
 
 Status show_info(const Arguments& arguments) {
@@ -69,17 +108,36 @@ Status show_info(const Arguments& arguments) {
     return tell(format::to_text(*statistics, input_name(arguments.lyr_path)));
 }
 
+// Which options go together.
+Status check(const CLI::App& app, const Arguments& arguments, std::optional<ExportFormat> format) {
+    const bool one_layer = arguments.layer > 0, is_picture = format == ExportFormat::svg;
+    const char* what = one_layer ? "the picture" : "the export";
+    const NamedFile output{what, arguments.output_path};
+    if (const Status apart = check_apart(arguments.inputs(), {output}); !apart) return apart;
+    if (arguments.info && (one_layer || app.count("--output") > 0 || !arguments.to.empty()))
+        return usage("--info writes nothing else: say either --info or --layer N or -o FILE");
+    if (is_picture && !one_layer) return usage("a picture needs --layer N");
+    if (format && !is_picture && one_layer) return usage("--layer N makes pictures only");
+    if (arguments.no_travel && !is_picture) return usage("--no-travel needs --layer N");
+    if (arguments.gcode.any() && format != ExportFormat::gcode)
+        return usage("--gcode-... need G-code to write: -o FILE.gcode or --to gcode");
+    return Done{};
+}
+
 Status work(const CLI::App& app, const Arguments& arguments) {
-    const bool draws = arguments.layer > 0;
-    if (draws == arguments.info) return usage("say either --info or --layer N");
-    if (!draws && (app.count("--output") > 0 || arguments.no_travel))
-        return usage("-o and --no-travel need --layer N");
-    if (const Status apart = check_apart({{"the print", arguments.lyr_path}},
-                                         {{"the picture", arguments.output_path}});
-        !apart)
-        return apart;
+    std::optional<ExportFormat> format;
+    if (!arguments.info) {
+        if (arguments.layer == 0 && app.count("--output") == 0 && arguments.to.empty())
+            return usage("say --info or --layer N or -o FILE");
+        const auto otherwise =
+            arguments.layer > 0 ? std::optional(ExportFormat::svg) : std::nullopt;
+        const auto found = export_format(arguments.output_path, arguments.to, otherwise);
+        if (!found) return found.error();
+        format = *found;
+    }
+    if (const Status checked = check(app, arguments, format); !checked) return checked;
     const SignalWatch watch(program.name);
-    return draws ? draw_layer(arguments) : show_info(arguments);
+    return format ? write(arguments, *format) : show_info(arguments);
 }
 
 }  // namespace

@@ -1,0 +1,99 @@
+#include "apps/export_format.h"
+
+#include <algorithm>
+#include <array>
+
+#include "apps/command_line.h"
+#include "apps/gcode_settings.h"
+#include "base/replace_file.h"
+#include "base/text.h"
+#include "format/export/gcode.h"
+#include "format/export/svg.h"
+
+namespace lyr::command_line {
+namespace {
+
+struct Name {
+    ExportFormat format;
+    std::string_view name;  // for --to
+    std::array<std::string_view, 3> endings;
+};
+
+constexpr Name names[] = {{ExportFormat::lyr, "lyr", {".lyr"}},
+                          {ExportFormat::gcode, "gcode", {".gcode", ".gco", ".g"}},
+                          {ExportFormat::svg, "svg", {".svg"}}};
+
+bool ends_with(std::string text, std::string_view ending) {
+    std::transform(text.begin(), text.end(), text.begin(), [](char c) {
+        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    });
+    return !ending.empty() && text.size() > ending.size() && text.ends_with(ending);
+}
+
+Status write_svg(format::Reader& reader, const ExportRequest& request, ReplaceFile& file) {
+    const auto svg =
+        format::layer_svg(reader, request.layer.value_or(0), {.travels = request.travels});
+    if (!svg) return svg.error();
+    file.write(*svg);
+    return Done{};
+}
+
+Status write_gcode(format::Reader& reader, const ExportRequest& request, ReplaceFile& file,
+                   Diagnostics& diagnostics) {
+    const auto options = gcode_settings(reader.header().metadata.configuration, request.gcode);
+    if (!options) return options.error();
+    return format::write_gcode(
+        reader, *options, [&](std::string_view text) { file.write(text); }, diagnostics);
+}
+
+Status write(format::Reader& reader, const ExportRequest& request, ReplaceFile& file,
+             Diagnostics& diagnostics) {
+    switch (request.format) {
+        case ExportFormat::gcode:
+            return write_gcode(reader, request, file, diagnostics);
+        case ExportFormat::svg:
+            return write_svg(reader, request, file);
+        case ExportFormat::lyr:
+            break;
+    }
+    return usage("a .lyr file is what stepc writes");
+}
+
+}  // namespace
+
+std::string export_format_names() {
+    std::string text;
+    for (const Name& name : names) text += (text.empty() ? "" : ", ") + std::string(name.name);
+    return text;
+}
+
+std::optional<ExportFormat> export_format_named(const std::string& text) {
+    for (const Name& name : names)
+        if (name.name == text) return name.format;
+    return std::nullopt;
+}
+
+Result<ExportFormat> export_format(const std::string& path, const std::string& to,
+                                   std::optional<ExportFormat> otherwise) {
+    if (!to.empty()) {
+        if (const auto format = export_format_named(to)) return *format;
+        return usage("--to: expected one of " + export_format_names() + ", found " + in_quotes(to));
+    }
+    for (const Name& name : names)
+        for (const std::string_view ending : name.endings)
+            if (ends_with(path, ending)) return name.format;
+    if (otherwise) return *otherwise;
+    return usage(in_quotes(path) + " does not say by its ending what to write: say --to FORMAT (" +
+                 export_format_names() + ')');
+}
+
+Status export_print(format::Reader& reader, const ExportRequest& request,
+                    Diagnostics& diagnostics) {
+    auto file = ReplaceFile::open(request.output_path);
+    if (!file) return file.error();
+    if (Status written = write(reader, request, *file, diagnostics); !written)
+        return written.error();
+    return file->commit();
+}
+
+}  // namespace lyr::command_line
