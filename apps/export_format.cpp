@@ -5,7 +5,6 @@
 
 #include "apps/command_line.h"
 #include "apps/gcode_settings.h"
-#include "base/replace_file.h"
 #include "base/text.h"
 #include "format/export/gcode.h"
 #include "format/export/svg.h"
@@ -30,29 +29,28 @@ bool ends_with(std::string text, std::string_view ending) {
     return !ending.empty() && text.size() > ending.size() && text.ends_with(ending);
 }
 
-Status write_svg(format::Reader& reader, const ExportRequest& request, ReplaceFile& file) {
+Status write_svg(format::Reader& reader, const ExportRequest& request, const format::Sink& sink) {
     const auto svg =
         format::layer_svg(reader, request.layer.value_or(0), {.travels = request.travels});
     if (!svg) return svg.error();
-    file.write(*svg);
+    sink(*svg);
     return Done{};
 }
 
-Status write_gcode(format::Reader& reader, const ExportRequest& request, ReplaceFile& file,
+Status write_gcode(format::Reader& reader, const ExportRequest& request, const format::Sink& sink,
                    Diagnostics& diagnostics) {
     const auto options = gcode_settings(reader.header().metadata.configuration, request.gcode);
     if (!options) return options.error();
-    return format::write_gcode(
-        reader, *options, [&](std::string_view text) { file.write(text); }, diagnostics);
+    return format::write_gcode(reader, *options, sink, diagnostics);
 }
 
-Status write(format::Reader& reader, const ExportRequest& request, ReplaceFile& file,
+Status write(format::Reader& reader, const ExportRequest& request, const format::Sink& sink,
              Diagnostics& diagnostics) {
     switch (request.format) {
         case ExportFormat::gcode:
-            return write_gcode(reader, request, file, diagnostics);
+            return write_gcode(reader, request, sink, diagnostics);
         case ExportFormat::svg:
-            return write_svg(reader, request, file);
+            return write_svg(reader, request, sink);
         case ExportFormat::lyr:
             break;
     }
@@ -87,13 +85,17 @@ Result<ExportFormat> export_format(const std::string& path, const std::string& t
                  export_format_names() + ')');
 }
 
-Status export_print(format::Reader& reader, const ExportRequest& request,
-                    Diagnostics& diagnostics) {
-    auto file = ReplaceFile::open(request.output_path);
-    if (!file) return file.error();
-    if (Status written = write(reader, request, *file, diagnostics); !written)
+Result<std::uint64_t> export_print(format::Reader& reader, const ExportRequest& request,
+                                   ReplaceFile file, Diagnostics& diagnostics) {
+    std::uint64_t bytes = 0;
+    const format::Sink sink = [&](std::string_view text) {
+        bytes += text.size();
+        file.write(text);
+    };
+    if (Status written = write(reader, request, sink, diagnostics); !written)
         return written.error();
-    return file->commit();
+    if (Status committed = file.commit(); !committed) return committed.error();
+    return bytes;
 }
 
 }  // namespace lyr::command_line

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/diagnostic.h"
+#include "base/replace_file.h"
 #include "format/reader.h"
 
 namespace lyr::command_line {
@@ -35,14 +36,14 @@ struct GcodeRequest {
 };
 
 struct ExportRequest {
-    std::string output_path;
     ExportFormat format = ExportFormat::svg;
     std::optional<std::uint32_t> layer{};  // from 0; none: all
     bool travels = true;
     GcodeRequest gcode{};
 };
 
-// Writes the print that the reader is at the beginning of.
-Status export_print(format::Reader& reader, const ExportRequest& request, Diagnostics& diagnostics);
+// Writes the print that the reader is at the beginning of. The bytes written.
+Result<std::uint64_t> export_print(format::Reader& reader, const ExportRequest& request,
+                                   ReplaceFile file, Diagnostics& diagnostics);
 
 }  // namespace lyr::command_line

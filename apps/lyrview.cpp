@@ -89,15 +89,16 @@ Status write(const Arguments& arguments, ExportFormat format) {
     auto reader = format::Reader::open(
         arguments.lyr_path, {.keep_thumbnails = is_gcode, .keep_configuration = is_gcode});
     if (!reader) return reader.error();
-    ExportRequest request{.output_path = arguments.output_path,
-                          .format = format,
-                          .travels = !arguments.no_travel,
-                          .gcode = arguments.gcode};
+    ExportRequest request{
+        .format = format, .travels = !arguments.no_travel, .gcode = arguments.gcode};
     if (arguments.layer > 0) request.layer = arguments.layer - 1;
+    auto file = ReplaceFile::open(arguments.output_path);
+    if (!file) return file.error();
     Diagnostics diagnostics;
-    const Status written = export_print(*reader, request, diagnostics);
+    const auto written = export_print(*reader, request, std::move(*file), diagnostics);
     show(program, diagnostics);
-    return written;
+    if (!written) return written.error();
+    return Done{};
 }
 
 Status show_info(const Arguments& arguments) {

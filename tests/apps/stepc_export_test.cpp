@@ -1,0 +1,35 @@
+// stepc straight to another format: as by way of a .lyr file.
+
+#include "apps/program.h"
+
+using namespace lyr;
+using namespace lyr::tests;
+
+TEST_CASE("stepc: G-code from the model is that of the print") {
+    const Folder folder("stepc-gcode");
+    folder.copy("parts/cube_hole.step", "a.step");
+    const std::string set =
+        " --set gcode.flavor=klipper --set gcode.start=G28,T={nozzle_temperature}";
+    REQUIRE(folder.run("stepc a.step -o a.lyr" + set).status == 0);
+    REQUIRE(folder.run("lyrview a.lyr -o b.gcode").status == 0);
+    const Ended direct = folder.run("stepc a.step -o a.gcode" + set);
+    CHECK(direct.status == 0);
+    const std::string text = text_of(folder / "a.gcode");
+    CHECK(text == text_of(folder / "b.gcode"));
+    CHECK(text.find("\nG28\nT=210\n") != std::string::npos);
+    CHECK(text.find("\n; nozzle_diameter = 0.4\n") != std::string::npos);
+    CHECK(direct.out.find("a.gcode: " + std::to_string(text.size()) + " bytes") !=
+          std::string::npos);
+    CHECK(folder.run("stepc a.step -o - --to gcode" + set).out == text);
+    CHECK(folder.files() == std::set<std::string>{"a.step", "a.lyr", "a.gcode", "b.gcode"});
+}
+
+TEST_CASE("stepc: what it does not write is refused before it slices") {
+    const Folder folder("stepc-export-wrong");
+    folder.copy("parts/cube_hole.step", "a.step");
+    check_failure(folder.run("stepc a.step -o a.svg"), "stepc", 2, "no pictures");
+    check_failure(folder.run("stepc a.step --to gcode"), "stepc", 2, "--to needs -o");
+    check_failure(folder.run("stepc a.step -o x --to foo"), "stepc", 2, "expected one of");
+    check_failure(folder.run("stepc a.step -o missing/a.gcode"), "stepc", 6, "missing/a.gcode");
+    CHECK(folder.files() == std::set<std::string>{"a.step"});
+}
