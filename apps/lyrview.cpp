@@ -6,6 +6,7 @@
 #include "apps/command_line.h"
 #include "apps/export_format.h"
 #include "apps/files.h"
+#include "apps/gcode_to_print.h"
 #include "apps/signal_watch.h"
 #include "format/export/statistics.h"
 #include "format/reader.h"
@@ -16,13 +17,14 @@ using namespace lyr;
 using namespace lyr::command_line;
 
 struct Arguments {
-    std::string lyr_path, output_path = "-", to;
+    std::string lyr_path, gcode_path, output_path = "-", to;
     std::uint32_t layer = 0;  // from 1; 0: not given
     bool info = false, no_travel = false;
     GcodeRequest gcode;
 
     std::vector<NamedFile> inputs() const {
         return {{"the print", lyr_path},
+                {"the G-code", gcode_path},
                 {"the lines before the print", gcode.start_path},
                 {"the lines after the print", gcode.end_path}};
     }
@@ -35,6 +37,7 @@ constexpr Program program{
     "  lyrview part.lyr --layer 36 -o layer.svg              layer 36 as a picture, in mm\n"
     "  lyrview part.lyr --layer 36 --no-travel -o layer.svg  only what is extruded\n"
     "  lyrview part.lyr -o part.gcode --gcode-flavor klipper as G-code, arcs as G2 and G3\n"
+    "  lyrview --from-gcode part.gcode -o part.lyr           what another slicer made, for lyrrun\n"
     "  stepc part.step -o - | lyrview - --info               from a pipe\n"
     "\n"
     "What is written follows from the ending of the file's name, or from --to.\n"
@@ -66,8 +69,10 @@ void add_gcode(CLI::App& app, GcodeRequest& gcode) {
 }
 
 void add_options(CLI::App& app, Arguments& arguments) {
-    add_file(app, "print", arguments.lyr_path, "The .lyr file that stepc wrote; -: standard input")
-        ->required();
+    add_file(app, "print", arguments.lyr_path, "The .lyr file that stepc wrote; -: standard input");
+    add_file(app, "--from-gcode", arguments.gcode_path,
+             "Instead of a print: G-code of any slicer, to write as a print (-o FILE.lyr); -: "
+             "standard input");
     add_flag(app, "--info", arguments.info, "Sum the file up on standard output");
     add_count(app, "--layer", "N", arguments.layer, {1, std::numeric_limits<std::uint32_t>::max()},
               "Draw this layer, 1 to the number of layers");
@@ -125,7 +130,28 @@ Status check(const CLI::App& app, const Arguments& arguments, std::optional<Expo
     return Done{};
 }
 
+// From G-code to a print.
+Status bring_in(const CLI::App& app, const Arguments& arguments) {
+    const bool is_print = arguments.to.empty() ? arguments.output_path.ends_with(".lyr") ||
+                                                     arguments.output_path == "-"
+                                               : arguments.to == "lyr";
+    if (!arguments.lyr_path.empty() || arguments.info || arguments.layer > 0 ||
+        arguments.no_travel || arguments.gcode.any() || app.count("--output") == 0 || !is_print)
+        return usage("--from-gcode writes a print and nothing else: say -o FILE.lyr");
+    const NamedFile output{"the print", arguments.output_path};
+    if (const Status apart = check_apart({{"the G-code", arguments.gcode_path}}, {output}); !apart)
+        return apart;
+    const SignalWatch watch(program.name);
+    Diagnostics diagnostics;
+    const auto text = gcode_to_print(arguments.gcode_path, arguments.output_path, diagnostics);
+    show(program, diagnostics);
+    if (!text) return text.error();
+    return tell(*text, {output});
+}
+
 Status work(const CLI::App& app, const Arguments& arguments) {
+    if (!arguments.gcode_path.empty()) return bring_in(app, arguments);
+    if (arguments.lyr_path.empty()) return usage("print is required");
     std::optional<ExportFormat> format;
     if (!arguments.info) {
         if (arguments.layer == 0 && app.count("--output") == 0 && arguments.to.empty())

@@ -66,3 +66,35 @@ TEST_CASE("lyrview: G-code is as the command line says") {
     CHECK(text.find("\nHELLO 3\n") != std::string::npos);
     CHECK(text.find("; gcode_flavor = klipper\n") != std::string::npos);
 }
+
+TEST_CASE("lyrview: G-code comes in as a print that lyrrun takes") {
+    const Folder folder = with_print("export-import");
+    CHECK(folder.run("lyrview a.lyr -o a.gcode").status == 0);
+    const Ended ended = folder.run("lyrview --from-gcode a.gcode -o b.lyr");
+    CHECK(ended.status == 0);
+    CHECK(ended.err.empty());
+    CHECK(ended.out.find("b.lyr: 3 layers, ") != std::string::npos);
+    CHECK(folder.run("lyrrun b.lyr --simulate").status == 0);
+    CHECK(folder.run("lyrview --from-gcode - -o - < a.gcode > c.lyr").status == 0);
+    CHECK(folder.run("lyrview c.lyr --info").out.find("layers        3") != std::string::npos);
+    folder.copy("gcode/cube_hole_prusaslicer.gcode", "prusa.gcode");
+    CHECK(folder.run("lyrview --from-gcode prusa.gcode -o prusa.lyr").err.empty());
+    CHECK(folder.run("lyrrun prusa.lyr --simulate").status == 0);
+}
+
+TEST_CASE("lyrview: what is no G-code is refused with file and line, and leaves no print") {
+    const Folder folder("export-import-wrong");
+    folder.write("bad.gcode", "G28\nG1 X1 Y\n");
+    check_failure(folder.run("lyrview --from-gcode bad.gcode -o b.lyr"), "lyrview", 3,
+                  "bad.gcode:2: error: expected a number behind Y");
+    check_failure(folder.run("lyrview --from-gcode none.gcode -o b.lyr"), "lyrview", 3,
+                  "none.gcode");
+    for (const char* script :
+         {"lyrview --from-gcode bad.gcode", "lyrview --from-gcode bad.gcode -o b.svg",
+          "lyrview x.lyr --from-gcode bad.gcode -o b.lyr",
+          "lyrview --from-gcode bad.gcode --info -o b.lyr"})
+        check_failure(folder.run(script), "lyrview", 2, "writes a print and nothing else");
+    check_failure(folder.run("lyrview --from-gcode bad.gcode --to lyr -o bad.gcode"), "lyrview", 2,
+                  "the print would overwrite the G-code");
+    CHECK(folder.files() == std::set<std::string>{"bad.gcode"});
+}
