@@ -2,6 +2,8 @@
 # make demo       slices the gearbox base, simulates the print, draws a layer: all into demo/
 # make test       builds and runs every test
 # make sanitize   the same tests under the address and undefined-behaviour sanitizers, into build-sanitize/
+# make test-klipper KLIPPER=checkout   both show pieces as G-code through Klipper's own batch mode (needs: tools/setup
+#                 --klipper); docs/exports.md
 # make board      only what a printer's board needs (lyrrun, lyrview), into build-board/
 # make bench      speed beside OpenCASCADE's and PrusaSlicer's, into build-bench/ (needs: tools/setup --bench);
 #                 LYR_BENCH_FILES=folder of STEP files to read
@@ -14,7 +16,7 @@ JOBS   ?= $(shell nproc)
 LYR_BENCH_FILES ?= fixtures/parts
 CTEST   = ctest --output-on-failure -j $(JOBS)
 
-.PHONY: all setup demo test sanitize board bench install clean
+.PHONY: all setup demo test test-klipper sanitize board bench install clean
 
 all: setup
 	cmake -S . -B $(BUILD) -DCMAKE_BUILD_TYPE=Release
@@ -33,6 +35,15 @@ demo: all
 test: all board
 	cmake --build $(BUILD) -j $(JOBS)
 	cd $(BUILD) && $(CTEST)
+
+test-klipper: all
+	@mkdir -p build-klipper
+	$(BUILD)/stepc fixtures/parts/gearbox_base.step -o build-klipper/gearbox.gcode --set gcode.flavor=klipper
+	$(BUILD)/stepc fixtures/parts/gearbox_base.step -o build-klipper/absolute.gcode --set gcode.flavor=klipper \
+	  --set gcode.extrusion=absolute --set travel.wipe=2
+	$(BUILD)/stepc fixtures/parts/lower_teeth.step -o build-klipper/arch.gcode --set gcode.flavor=klipper \
+	  --layer-height 0.1
+	tools/check-klipper "$(KLIPPER)" build-klipper/gearbox.gcode build-klipper/absolute.gcode build-klipper/arch.gcode
 
 sanitize: setup
 	cmake -S . -B build-sanitize -DCMAKE_BUILD_TYPE=RelWithDebInfo -DLYR_SANITIZE=ON
@@ -55,4 +66,4 @@ install: all
 	cmake --install $(BUILD) --prefix $(PREFIX)
 
 clean:
-	rm -rf build build-sanitize build-board build-bench demo
+	rm -rf build build-sanitize build-board build-bench build-klipper demo
