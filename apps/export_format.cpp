@@ -6,7 +6,10 @@
 #include "apps/command_line.h"
 #include "apps/gcode_settings.h"
 #include "base/text.h"
+#include "format/export/cli.h"
+#include "format/export/dxf.h"
 #include "format/export/gcode.h"
+#include "format/export/slice_3mf.h"
 #include "format/export/svg.h"
 
 namespace lyr::command_line {
@@ -18,9 +21,10 @@ struct Name {
     std::array<std::string_view, 3> endings;
 };
 
-constexpr Name names[] = {{ExportFormat::lyr, "lyr", {".lyr"}},
-                          {ExportFormat::gcode, "gcode", {".gcode", ".gco", ".g"}},
-                          {ExportFormat::svg, "svg", {".svg"}}};
+constexpr Name names[] = {
+    {ExportFormat::lyr, "lyr", {".lyr"}}, {ExportFormat::gcode, "gcode", {".gcode", ".gco", ".g"}},
+    {ExportFormat::svg, "svg", {".svg"}}, {ExportFormat::dxf, "dxf", {".dxf"}},
+    {ExportFormat::cli, "cli", {".cli"}}, {ExportFormat::slices_3mf, "3mf", {".3mf"}}};
 
 bool ends_with(std::string text, std::string_view ending) {
     std::transform(text.begin(), text.end(), text.begin(), [](char c) {
@@ -30,8 +34,8 @@ bool ends_with(std::string text, std::string_view ending) {
 }
 
 Status write_svg(format::Reader& reader, const ExportRequest& request, const format::Sink& sink) {
-    const auto svg =
-        format::layer_svg(reader, request.layer.value_or(0), {.travels = request.travels});
+    if (!request.layer) return format::print_svg(reader, {.travels = request.travels}, sink);
+    const auto svg = format::layer_svg(reader, *request.layer, {.travels = request.travels});
     if (!svg) return svg.error();
     sink(*svg);
     return Done{};
@@ -51,6 +55,13 @@ Status write(format::Reader& reader, const ExportRequest& request, const format:
             return write_gcode(reader, request, sink, diagnostics);
         case ExportFormat::svg:
             return write_svg(reader, request, sink);
+        case ExportFormat::dxf:
+            return format::write_dxf(reader, {.layer = request.layer, .travels = request.travels},
+                                     sink);
+        case ExportFormat::cli:
+            return format::write_cli(reader, sink, diagnostics);
+        case ExportFormat::slices_3mf:
+            return format::write_slice_3mf(reader, sink, diagnostics);
         case ExportFormat::lyr:
             break;
     }

@@ -18,9 +18,14 @@
 
 namespace lyr::command_line {
 
-enum class ExportFormat : std::uint8_t { lyr, svg, gcode };
+enum class ExportFormat : std::uint8_t { lyr, gcode, svg, dxf, cli, slices_3mf };
 
-// "svg, gcode, ...": what --to takes.
+// Whether it can be of one layer; the others are of the whole print.
+constexpr bool is_drawing(ExportFormat format) {
+    return format == ExportFormat::svg || format == ExportFormat::dxf;
+}
+
+// "lyr, gcode, ...": what --to takes.
 std::string export_format_names();
 std::optional<ExportFormat> export_format_named(const std::string& name);
 Result<ExportFormat> export_format(const std::string& path, const std::string& to,

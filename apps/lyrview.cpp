@@ -1,5 +1,6 @@
 // lyrview: shows what a .lyr file will print, as a picture of a layer or in figures.
 
+#include <charconv>
 #include <limits>
 #include <string>
 
@@ -19,7 +20,7 @@ using namespace lyr::command_line;
 struct Arguments {
     std::string lyr_path, gcode_path, output_path = "-", to;
     std::uint32_t layer = 0;  // from 1; 0: not given
-    bool info = false, no_travel = false;
+    bool all_layers = false, info = false, no_travel = false;
     GcodeRequest gcode;
 
     std::vector<NamedFile> inputs() const {
@@ -36,6 +37,8 @@ constexpr Program program{
     "  lyrview part.lyr --info                               what is in it, lengths, estimates\n"
     "  lyrview part.lyr --layer 36 -o layer.svg              layer 36 as a picture, in mm\n"
     "  lyrview part.lyr --layer 36 --no-travel -o layer.svg  only what is extruded\n"
+    "  lyrview part.lyr --layer 36 -o layer.dxf              for CAD, arcs as arcs\n"
+    "  lyrview part.lyr -o part.cli                          for other machines; or part.3mf\n"
     "  lyrview part.lyr -o part.gcode --gcode-flavor klipper as G-code, arcs as G2 and G3\n"
     "  lyrview --from-gcode part.gcode -o part.lyr           what another slicer made, for lyrrun\n"
     "  stepc part.step -o - | lyrview - --info               from a pipe\n"
@@ -74,8 +77,20 @@ void add_options(CLI::App& app, Arguments& arguments) {
              "Instead of a print: G-code of any slicer, to write as a print (-o FILE.lyr); -: "
              "standard input");
     add_flag(app, "--info", arguments.info, "Sum the file up on standard output");
-    add_count(app, "--layer", "N", arguments.layer, {1, std::numeric_limits<std::uint32_t>::max()},
-              "Draw this layer, 1 to the number of layers");
+    add_text(
+        app, "--layer", "N|all",
+        [&](const std::string& text) -> std::optional<std::string> {
+            arguments.all_layers = text == "all";
+            if (arguments.all_layers) return std::nullopt;
+            const auto [end, error] =
+                std::from_chars(text.data(), text.data() + text.size(), arguments.layer);
+            const bool is_number = error == std::errc() && end == text.data() + text.size();
+            if (is_number && arguments.layer > 0) return std::nullopt;
+            arguments.layer = 0;
+            return "a whole number from 1 to " +
+                   std::to_string(std::numeric_limits<std::uint32_t>::max()) + ", or all";
+        },
+        "Draw this layer, 1 to the number of layers, or all of them in one file (SVG, DXF)");
     add_file(app, "-o,--output", arguments.output_path,
              "What to write; without it, or as -: standard output");
     add_text(
@@ -116,14 +131,15 @@ Status show_info(const Arguments& arguments) {
 
 // Which options go together.
 Status check(const CLI::App& app, const Arguments& arguments, std::optional<ExportFormat> format) {
-    const bool one_layer = arguments.layer > 0, is_picture = format == ExportFormat::svg;
-    const char* what = one_layer ? "the picture" : "the export";
+    const bool draws = arguments.layer > 0 || arguments.all_layers;
+    const bool is_picture = format && is_drawing(*format);
+    const char* what = draws ? "the picture" : "the export";
     const NamedFile output{what, arguments.output_path};
     if (const Status apart = check_apart(arguments.inputs(), {output}); !apart) return apart;
-    if (arguments.info && (one_layer || app.count("--output") > 0 || !arguments.to.empty()))
+    if (arguments.info && (draws || app.count("--output") > 0 || !arguments.to.empty()))
         return usage("--info writes nothing else: say either --info or --layer N or -o FILE");
-    if (is_picture && !one_layer) return usage("a picture needs --layer N");
-    if (format && !is_picture && one_layer) return usage("--layer N makes pictures only");
+    if (is_picture && !draws) return usage("a picture needs --layer N, or --layer all");
+    if (format && !is_picture && draws) return usage("--layer N makes pictures only");
     if (arguments.no_travel && !is_picture) return usage("--no-travel needs --layer N");
     if (arguments.gcode.any() && format != ExportFormat::gcode)
         return usage("--gcode-... need G-code to write: -o FILE.gcode or --to gcode");
@@ -136,7 +152,8 @@ Status bring_in(const CLI::App& app, const Arguments& arguments) {
                                                      arguments.output_path == "-"
                                                : arguments.to == "lyr";
     if (!arguments.lyr_path.empty() || arguments.info || arguments.layer > 0 ||
-        arguments.no_travel || arguments.gcode.any() || app.count("--output") == 0 || !is_print)
+        arguments.all_layers || arguments.no_travel || arguments.gcode.any() ||
+        app.count("--output") == 0 || !is_print)
         return usage("--from-gcode writes a print and nothing else: say -o FILE.lyr");
     const NamedFile output{"the print", arguments.output_path};
     if (const Status apart = check_apart({{"the G-code", arguments.gcode_path}}, {output}); !apart)
@@ -154,10 +171,10 @@ Status work(const CLI::App& app, const Arguments& arguments) {
     if (arguments.lyr_path.empty()) return usage("print is required");
     std::optional<ExportFormat> format;
     if (!arguments.info) {
-        if (arguments.layer == 0 && app.count("--output") == 0 && arguments.to.empty())
+        const bool draws = arguments.layer > 0 || arguments.all_layers;
+        if (!draws && app.count("--output") == 0 && arguments.to.empty())
             return usage("say --info or --layer N or -o FILE");
-        const auto otherwise =
-            arguments.layer > 0 ? std::optional(ExportFormat::svg) : std::nullopt;
+        const auto otherwise = draws ? std::optional(ExportFormat::svg) : std::nullopt;
         const auto found = export_format(arguments.output_path, arguments.to, otherwise);
         if (!found) return found.error();
         format = *found;

@@ -259,8 +259,7 @@ Status complete(Arguments& arguments) {
     }
     const auto format = export_format(arguments.output_path, arguments.to, ExportFormat::lyr);
     if (!format) return format.error();
-    if (*format == ExportFormat::svg)
-        return usage("stepc draws no pictures: lyrview does, of a layer of the .lyr file");
+    if (is_drawing(*format)) return usage("stepc draws no layers: lyrview does, of a .lyr file");
     arguments.format = *format;
     return check_apart(arguments.inputs(), arguments.outputs());
 }

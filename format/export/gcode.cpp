@@ -80,6 +80,9 @@ private:
         append_rounded(out_, state.z_mm, 4);
         out_ += "\n;HEIGHT:";
         append_rounded(out_, state.height_mm, 4);
+        // Print servers learn the print's height from this one.
+        out_ += "\n;BEFORE_LAYER_CHANGE\n;";
+        append_rounded(out_, state.z_mm, 4);
         out_ += '\n';
         shown_ = {};
         shown_height_mm_ = state.height_mm;

@@ -30,6 +30,28 @@ TEST_CASE("lyrview: the ending says what is written, and --to over it") {
     }
 }
 
+TEST_CASE("lyrview: drawings of one layer or all, layers for other machines") {
+    const Folder folder = with_print("export-drawings");
+    const auto wrote = [&](const char* script, const char* name, const char* beginning) {
+        CAPTURE(script);
+        CHECK(folder.run(script).status == 0);
+        CHECK(text_of(folder / name).starts_with(beginning));
+    };
+    wrote("lyrview a.lyr --layer all -o a.svg", "a.svg", "<svg");
+    wrote("lyrview a.lyr --layer 2 -o a.dxf", "a.dxf", "999\nunit: mm");
+    wrote("lyrview a.lyr --layer all -o all.dxf", "all.dxf", "999\nunit: mm");
+    wrote("lyrview a.lyr -o a.cli", "a.cli", "$$HEADERSTART\n");
+    wrote("lyrview a.lyr -o a.3mf", "a.3mf", "PK");
+    const Ended told = folder.run("lyrview a.lyr -o b.cli");
+    CHECK(told.out.empty());
+    CHECK(told.err.find("chords within 0.005 mm") != std::string::npos);
+    check_failure(folder.run("lyrview a.lyr --layer 4 -o d.dxf"), "lyrview", 3, "3 layers");
+    check_failure(folder.run("lyrview a.lyr -o d.dxf"), "lyrview", 2, "--layer N, or --layer all");
+    check_failure(folder.run("lyrview a.lyr --layer all -o d.cli"), "lyrview", 2, "pictures only");
+    check_failure(folder.run("lyrview a.lyr --layer all -o d.3mf"), "lyrview", 2, "pictures only");
+    CHECK(!fs::exists(folder / "d.dxf"));
+}
+
 TEST_CASE("lyrview: options of an export that make no sense are refused") {
     const Folder folder = with_print("export-wrong");
     const auto refuses = [&](const char* script, const char* part) {

@@ -24,10 +24,19 @@ TEST_CASE("stepc: G-code from the model is that of the print") {
     CHECK(folder.files() == std::set<std::string>{"a.step", "a.lyr", "a.gcode", "b.gcode"});
 }
 
+TEST_CASE("stepc: layers for other machines, from the model") {
+    const Folder folder("stepc-slices");
+    folder.copy("parts/cube_hole.step", "a.step");
+    CHECK(folder.run("stepc a.step -o a.cli").status == 0);
+    CHECK(folder.run("stepc a.step -o a.3mf").status == 0);
+    CHECK(text_of(folder / "a.cli").find("$$LABEL/1,a.step\n") != std::string::npos);
+    CHECK(text_of(folder / "a.3mf").starts_with("PK"));
+}
+
 TEST_CASE("stepc: what it does not write is refused before it slices") {
     const Folder folder("stepc-export-wrong");
     folder.copy("parts/cube_hole.step", "a.step");
-    check_failure(folder.run("stepc a.step -o a.svg"), "stepc", 2, "no pictures");
+    check_failure(folder.run("stepc a.step -o a.svg"), "stepc", 2, "draws no layers");
     check_failure(folder.run("stepc a.step --to gcode"), "stepc", 2, "--to needs -o");
     check_failure(folder.run("stepc a.step -o x --to foo"), "stepc", 2, "expected one of");
     check_failure(folder.run("stepc a.step -o missing/a.gcode"), "stepc", 6, "missing/a.gcode");
