@@ -27,8 +27,8 @@ namespace lyr::format {
 
 enum class GcodeFlavor : std::uint8_t { marlin, klipper };
 
-// Of radii. A firmware's single precision has 7 digits: beyond, an arc's middle would be off by more than a hundredth
-// of a millimetre, and of smaller ones the centre is rounded away.
+// Of radii. Firmwares reckon with 7 digits: up to here an arc's length comes out within 0.001 mm (docs/exports.md), and of
+// smaller ones the centre is rounded away.
 inline constexpr double largest_arc_mm = 1000, smallest_arc_mm = 0.01;
 
 struct GcodeOptions {
