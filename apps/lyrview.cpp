@@ -1,5 +1,6 @@
 // lyrview: shows what a .lyr file will print, as a picture of a layer or in figures.
 
+#include <array>
 #include <charconv>
 #include <limits>
 #include <string>
@@ -19,7 +20,8 @@ using namespace lyr::command_line;
 
 struct Arguments {
     std::string lyr_path, gcode_path, output_path = "-", to;
-    std::uint32_t layer = 0;  // from 1; 0: not given
+    std::array<double, 1> filament_mm{};  // diameter; 0: not given
+    std::uint32_t layer = 0;              // from 1; 0: not given
     bool all_layers = false, info = false, no_travel = false;
     GcodeRequest gcode;
 
@@ -76,6 +78,8 @@ void add_options(CLI::App& app, Arguments& arguments) {
     add_file(app, "--from-gcode", arguments.gcode_path,
              "Instead of a print: G-code of any slicer, to write as a print (-o FILE.lyr); -: "
              "standard input");
+    add_numbers(app, "--filament-diameter", "MM", arguments.filament_mm, {0, 10, "mm"},
+                "Of the G-code's filament; 0: as its comments say, or 1.75");
     add_flag(app, "--info", arguments.info, "Sum the file up on standard output");
     add_text(
         app, "--layer", "N|all",
@@ -160,7 +164,8 @@ Status bring_in(const CLI::App& app, const Arguments& arguments) {
         return apart;
     const SignalWatch watch(program.name);
     Diagnostics diagnostics;
-    const auto text = gcode_to_print(arguments.gcode_path, arguments.output_path, diagnostics);
+    const auto text = gcode_to_print(arguments.gcode_path, arguments.output_path,
+                                     arguments.filament_mm[0], diagnostics);
     show(program, diagnostics);
     if (!text) return text.error();
     return tell(*text, {output});
@@ -169,6 +174,8 @@ Status bring_in(const CLI::App& app, const Arguments& arguments) {
 Status work(const CLI::App& app, const Arguments& arguments) {
     if (!arguments.gcode_path.empty()) return bring_in(app, arguments);
     if (arguments.lyr_path.empty()) return usage("print is required");
+    if (app.count("--filament-diameter") > 0)
+        return usage("--filament-diameter needs --from-gcode: a print states its own");
     std::optional<ExportFormat> format;
     if (!arguments.info) {
         const bool draws = arguments.layer > 0 || arguments.all_layers;

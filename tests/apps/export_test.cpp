@@ -99,6 +99,11 @@ TEST_CASE("lyrview: G-code comes in as a print that lyrrun takes") {
     CHECK(folder.run("lyrrun b.lyr --simulate").status == 0);
     CHECK(folder.run("lyrview --from-gcode - -o - < a.gcode > c.lyr").status == 0);
     CHECK(folder.run("lyrview c.lyr --info").out.find("layers        3") != std::string::npos);
+    // Thicker filament, more of it.
+    CHECK(folder.run("lyrview --from-gcode a.gcode -o d.lyr --filament-diameter 3.5").status == 0);
+    CHECK(folder.run("lyrview d.lyr --info").out.find("of 3.5 mm") != std::string::npos);
+    check_failure(folder.run("lyrview a.lyr --info --filament-diameter 3"), "lyrview", 2,
+                  "needs --from-gcode");
     folder.copy("gcode/cube_hole_prusaslicer.gcode", "prusa.gcode");
     CHECK(folder.run("lyrview --from-gcode prusa.gcode -o prusa.lyr").err.empty());
     CHECK(folder.run("lyrrun prusa.lyr --simulate").status == 0);

@@ -204,6 +204,36 @@ TEST_CASE("gcode import 3: layers are those of comments, or of heights") {
               .layers.size() == 1);
 }
 
+TEST_CASE("gcode import 3: comments of OrcaSlicer, Bambu Studio and Simplify3D are understood") {
+    const std::string moves = "G0 X0 Y0 Z0.3\nG1 X10 E0.5\n", above = "G0 Z0.5\nG1 X20 E0.5\n";
+    struct Dialect {
+        std::string first, second;
+        Role role;
+        bool states_width;
+    };
+    for (const Dialect& dialect :
+         {Dialect{"; CHANGE_LAYER\n; Z_HEIGHT: 0.3\n; LAYER_HEIGHT: 0.3\n; FEATURE: Outer wall\n; "
+                  "LINE_WIDTH: 0.5\n",
+                  "; CHANGE_LAYER\n; Z_HEIGHT: 0.5\n; LAYER_HEIGHT: 0.2\n", Role::outer_wall, true},
+          Dialect{";LAYER_CHANGE\n;Z:0.3\n;HEIGHT:0.3\n;TYPE:Top surface\n;WIDTH:0.5\n",
+                  ";LAYER_CHANGE\n;Z:0.5\n;HEIGHT:0.2\n", Role::top_skin, true},
+          Dialect{"; layer 1, Z = 0.300\n", "; layer 2, Z = 0.500\n", Role::other, false}}) {
+        CAPTURE(dialect.first);
+        const Imported print = imported("M83\n" + dialect.first + moves + dialect.second + above);
+        REQUIRE(print.layers.size() == 2);
+        CHECK(print.layers[0].state.height_mm == doctest::Approx(0.3));
+        CHECK(print.layers[1].state.height_mm == doctest::Approx(0.2));
+        CHECK(print.layers[1].state.z_mm == 0.5);
+        for (const auto& given : print.operations) {
+            if (!std::holds_alternative<Line>(given.operation)) continue;
+            CHECK(given.style.role == dialect.role);
+            if (dialect.states_width) CHECK(given.style.width_mm == 0.5);
+            CHECK(10 * cross_section_mm2(given.style) ==
+                  doctest::Approx(0.5 * filament_mm2).epsilon(0.001));
+        }
+    }
+}
+
 TEST_CASE("gcode import 4: what is not known is told once, with its line and how often it stands") {
     const Imported print =
         imported(begin + "G29\nM117 Hello, world 1.2.3\nSTART_PRINT BED=60\nG29\nM999 S1\nG1 X20" +
