@@ -3,6 +3,8 @@
 # make test       builds and runs every test
 # make test-bits  a million random bits of a large print flipped, one at a time: both readers find each
 # make sanitize   the same tests under the address and undefined-behaviour sanitizers, into build-sanitize/
+# make test-klipper KLIPPER=checkout   both show pieces as G-code through Klipper's own batch mode (needs: tools/setup
+#                 --klipper); docs/exports.md
 # make board      only what a printer's board needs (lyrrun, lyrview), into build-board/
 # make bench      speed beside OpenCASCADE's and PrusaSlicer's, into build-bench/ (needs: tools/setup --bench);
 #                 LYR_BENCH_FILES=folder of STEP files to read
@@ -16,7 +18,7 @@ LYR_BENCH_FILES ?= fixtures/parts
 LYR_BENCH_SET   = --set perimeters.count=3 --set infill.density=15% --set infill.pattern=grid
 CTEST   = ctest --output-on-failure -j $(JOBS)
 
-.PHONY: all setup test-setup demo test test-bits sanitize board bench install clean
+.PHONY: all setup test-setup demo test test-bits test-klipper sanitize board bench install clean
 
 all: setup
 	cmake -S . -B $(BUILD) -DCMAKE_BUILD_TYPE=Release
@@ -44,6 +46,15 @@ test-bits: all
 	$(BUILD)/stepc fixtures/parts/lower_teeth.step -o $(BUILD)/lower_teeth.lyr
 	$(BUILD)/flipped_bits $(BUILD)/lower_teeth.lyr
 
+test-klipper: all
+	@mkdir -p build-klipper
+	$(BUILD)/stepc fixtures/parts/gearbox_base.step -o build-klipper/gearbox.gcode --set gcode.flavor=klipper
+	$(BUILD)/stepc fixtures/parts/gearbox_base.step -o build-klipper/absolute.gcode --set gcode.flavor=klipper \
+	  --set gcode.extrusion=absolute --set travel.wipe=2
+	$(BUILD)/stepc fixtures/parts/lower_teeth.step -o build-klipper/arch.gcode --set gcode.flavor=klipper \
+	  --layer-height 0.1
+	tools/check-klipper "$(KLIPPER)" build-klipper/gearbox.gcode build-klipper/absolute.gcode build-klipper/arch.gcode
+
 sanitize: test-setup
 	cmake -S . -B build-sanitize -DCMAKE_BUILD_TYPE=RelWithDebInfo -DLYR_SANITIZE=ON
 	cmake --build build-sanitize -j $(JOBS)
@@ -67,4 +78,4 @@ install: all
 	cmake --install $(BUILD) --prefix $(PREFIX)
 
 clean:
-	rm -rf build build-sanitize build-board build-bench demo
+	rm -rf build build-sanitize build-board build-bench build-klipper demo

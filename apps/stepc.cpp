@@ -9,10 +9,12 @@
 #include <vector>
 
 #include "apps/command_line.h"
+#include "apps/export_format.h"
 #include "apps/files.h"
 #include "apps/printer_file.h"
 #include "apps/progress_line.h"
 #include "apps/signal_watch.h"
+#include "apps/unnamed_print.h"
 #include "base/read_text.h"
 #include "base/text.h"
 #include "profile/built_in.h"
@@ -25,7 +27,9 @@ using namespace lyr;
 using namespace lyr::command_line;
 
 struct Arguments {
-    std::string step_path, lyr_path, heights_path, report_path, printer_path;
+    // The output is a .lyr file, or what else its name or --to says.
+    std::string step_path, output_path, to, heights_path, report_path, printer_path;
+    ExportFormat format = ExportFormat::lyr;
     std::array<double, 3> up{0, 0, 1};
     profile::Request settings;
     bool print_config = false;
@@ -40,7 +44,7 @@ struct Arguments {
                 {"the printer's file", printer_path}};
     }
     std::vector<NamedFile> outputs() const {
-        return {{"the print", lyr_path}, {"the report", report_path}};
+        return {{"the print", output_path}, {"the report", report_path}};
     }
 };
 
@@ -55,6 +59,7 @@ constexpr Program program{
     "  stepc part.step -o part.lyr --printer printer.toml     how long it takes on your own\n"
     "  stepc part.step -o part.lyr --up 0,-1,0            print it lying on another side\n"
     "  stepc part.step --section-at z.txt --report s.jsonl   areas at heights of your own\n"
+    "  stepc part.step -o part.gcode --set gcode.flavor=klipper   for another firmware\n"
     "  stepc part.step -o - | lyrview - --info            into a pipe\n"
     "\n"
     "Layer i is the section at its middle, with equal layers (i - 1/2) x layer height over the "
@@ -72,8 +77,16 @@ constexpr NumberRange direction{-1'000, 1'000, ""};
 void add_files(CLI::App& app, Arguments& arguments) {
     add_file(app, "part", arguments.step_path,
              "STEP file (ISO 10303-21; AP203, AP214, AP242); -: standard input");
-    add_file(app, "-o,--output", arguments.lyr_path,
-             "The print to write; -: standard output; without it, the part's name with .lyr");
+    add_file(app, "-o,--output", arguments.output_path,
+             "The print to write, as .lyr or as the name's ending says (.gcode); -: standard "
+             "output; without it, the part's name with .lyr");
+    add_text(
+        app, "--to", "FORMAT",
+        [&](const std::string& text) {
+            arguments.to = text;
+            return std::optional<std::string>();
+        },
+        "What to write, whatever the output's name: " + export_format_names());
     add_file(app, "--section-at", arguments.heights_path,
              "Only cut, at the heights of this file (mm, the model's own coordinates, one a line); "
              "-: standard input; needs --report");
@@ -172,10 +185,36 @@ std::string summary_text(const Arguments& arguments, const slicer::Summary& summ
     } else {
         text += slicer::size_text(summary, arguments.options) + summary.placed +
                 slicer::estimate_text(summary, arguments.options.machine().name) +
-                output_name(arguments.lyr_path) + ": " + counted(summary.bytes, "byte");
+                output_name(arguments.output_path) + ": " + counted(summary.bytes, "byte");
     }
     std::snprintf(line, sizeof line, ", %.2f s, ", time_s);
     return text + line + counted(findings, "finding") + '\n';
+}
+
+// The print, by way of a .lyr file if it is to be something else.
+Result<slicer::Summary> print(Model model, const Arguments& arguments,
+                              const slicer::Progress& progress, Diagnostics& diagnostics) {
+    const std::string name = arguments.step_path == "-"
+                                 ? standard_input_name
+                                 : std::filesystem::path(arguments.step_path).filename().string();
+    const auto print_to = [&](const std::string& path) {
+        return slicer::print(std::move(model), name, path, arguments.report_path, arguments.options,
+                             progress, diagnostics);
+    };
+    if (arguments.format == ExportFormat::lyr) return print_to(arguments.output_path);
+    auto file = ReplaceFile::open(arguments.output_path);
+    if (!file) return file.error();
+    auto unnamed = UnnamedPrint::create();
+    if (!unnamed) return unnamed.error();
+    auto summary = print_to(unnamed->path());
+    if (!summary) return summary.error();
+    auto reader = unnamed->read();
+    if (!reader) return reader.error();
+    const auto bytes =
+        export_print(*reader, {.format = arguments.format}, std::move(*file), diagnostics);
+    if (!bytes) return bytes.error();
+    summary->bytes = *bytes;
+    return summary;
 }
 
 Result<slicer::Summary> slice(const Arguments& arguments, ProgressLine& line,
@@ -196,11 +235,7 @@ Result<slicer::Summary> slice(const Arguments& arguments, ProgressLine& line,
         return slicer::section_at(*model, heights, arguments.report_path, arguments.options,
                                   progress, diagnostics);
     }
-    const std::string name = arguments.step_path == "-"
-                                 ? standard_input_name
-                                 : std::filesystem::path(arguments.step_path).filename().string();
-    return slicer::print(std::move(*model), name, arguments.lyr_path, arguments.report_path,
-                         arguments.options, progress, diagnostics);
+    return print(std::move(*model), arguments, progress, diagnostics);
 }
 
 // What the options say together, and the name of the print where they do not say it.
@@ -212,14 +247,20 @@ Status complete(Arguments& arguments) {
     arguments.options.up = up / longest;  // so that no square of a component underflows
     if (arguments.sections() && arguments.report_path.empty())
         return usage("--section-at needs --report FILE");
-    if (arguments.sections() && !arguments.lyr_path.empty())
+    if (arguments.sections() && !(arguments.output_path.empty() && arguments.to.empty()))
         return usage("--section-at writes no print: leave out -o");
     if (arguments.sections() && !arguments.printer_path.empty())
         return usage("--section-at estimates no time: leave out --printer");
-    if (!arguments.sections() && arguments.lyr_path.empty()) {
+    if (!arguments.sections() && arguments.output_path.empty()) {
         if (arguments.step_path == "-") return usage("a part from standard input needs -o FILE");
-        arguments.lyr_path = std::filesystem::path(arguments.step_path).replace_extension(".lyr");
+        if (!arguments.to.empty()) return usage("--to needs -o FILE");
+        arguments.output_path =
+            std::filesystem::path(arguments.step_path).replace_extension(".lyr");
     }
+    const auto format = export_format(arguments.output_path, arguments.to, ExportFormat::lyr);
+    if (!format) return format.error();
+    if (is_drawing(*format)) return usage("stepc draws no layers: lyrview does, of a .lyr file");
+    arguments.format = *format;
     return check_apart(arguments.inputs(), arguments.outputs());
 }
 

@@ -38,6 +38,8 @@ constexpr std::string_view infill_names[] = {"rectilinear", "aligned",   "grid",
                                              "concentric",  "honeycomb", "gyroid", "cubic"};
 constexpr std::string_view support_names[] = {"none", "grid", "tree"};
 constexpr std::string_view adhesion_names[] = {"none", "skirt", "brim", "raft"};
+constexpr std::string_view flavor_names[] = {"marlin", "klipper"};
+constexpr std::string_view extrusion_names[] = {"relative", "absolute"};
 
 // Lengths that follow from others are whole nanometres, so that 3/4 of 0.4 is 0.3.
 double times(double length_mm, double factor) {
@@ -264,11 +266,20 @@ void add_plate(std::vector<Key>& keys) {
                 "Greatest distance of the printed contour from the exact section");
 }
 
+void add_gcode(std::vector<Key>& keys) {
+    Section(keys, "gcode", &Profile::gcode)
+        .choice("flavor", &Gcode::flavor, Names(flavor_names), "The firmware that it is for")
+        .choice("extrusion", &Gcode::extrusion, Names(extrusion_names),
+                "Filament counted anew in each move, or from the layer's start")
+        .list("start", &Gcode::start, "Lines before the print, with {placeholders}; []: built-in")
+        .list("end", &Gcode::end, "Lines after the print; []: built-in");
+}
+
 std::vector<Key> make_keys() {
     std::vector<Key> keys;
     for (const auto add :
          {add_nozzle, add_filament, add_layer, add_perimeters, add_fill, add_support, add_speed,
-          add_acceleration, add_travel, add_heat, add_plate})
+          add_acceleration, add_travel, add_heat, add_plate, add_gcode})
         add(keys);
     return keys;
 }

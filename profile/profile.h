@@ -34,6 +34,8 @@ enum class InfillPattern : std::uint8_t {
 };
 enum class SupportKind : std::uint8_t { none, grid, tree };
 enum class AdhesionKind : std::uint8_t { none, skirt, brim, raft };
+enum class GcodeFlavor : std::uint8_t { marlin, klipper };
+enum class GcodeExtrusion : std::uint8_t { relative, absolute };
 
 struct Nozzle {
     double diameter_mm = 0.4;
@@ -205,6 +207,15 @@ struct Slicing {
     bool operator==(const Slicing&) const = default;
 };
 
+// Of a print that is written as G-code; docs/exports.md.
+struct Gcode {
+    GcodeFlavor flavor = GcodeFlavor::marlin;
+    GcodeExtrusion extrusion = GcodeExtrusion::relative;
+    std::vector<std::string> start;  // lines before and after the print; empty: the built-in ones
+    std::vector<std::string> end;
+    bool operator==(const Gcode&) const = default;
+};
+
 struct Profile {
     Nozzle nozzle;
     Filament filament;
@@ -222,6 +233,7 @@ struct Profile {
     Fan fan;
     Plate plate;
     Slicing slicing;
+    Gcode gcode;
     bool operator==(const Profile&) const = default;
 };
 

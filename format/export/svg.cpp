@@ -22,6 +22,8 @@ namespace {
 constexpr double core_share = 0.7;
 // Of a travel's line: wipes lie upon what was printed.
 constexpr double wipe_width = 2;
+// Of the groups of a picture of one layer.
+const std::string single_prefix = "s";
 
 struct Group {
     Role role = Role::other;
@@ -153,9 +155,9 @@ private:
     bool drawing_ = false;
 };
 
-void append_stroke(std::string& out, std::size_t group, const std::string& color, double width_mm) {
-    out += "<use xlink:href=\"#s" + std::to_string(group) + "\" stroke=\"" + color +
-           "\" stroke-width=\"";
+void append_stroke(std::string& out, const std::string& group, const std::string& color,
+                   double width_mm) {
+    out += "<use xlink:href=\"#" + group + "\" stroke=\"" + color + "\" stroke-width=\"";
     append_number(out, width_mm);
     out += "\"/>\n";
 }
@@ -171,11 +173,13 @@ std::vector<std::size_t> walls_last(const std::vector<Group>& groups) {
     return order;
 }
 
-std::string strokes_text(const Strokes& strokes, const SvgOptions& options, double thin_mm) {
+// `prefix` tells groups of one layer from those of others.
+std::string strokes_text(const Strokes& strokes, const SvgOptions& options, double thin_mm,
+                         const std::string& prefix) {
     std::string out = "<defs>\n";
     for (std::size_t i = 0; i < strokes.groups().size(); ++i) {
         const Group& group = strokes.groups()[i];
-        out += "<g id=\"s" + std::to_string(i) + "\">";
+        out += "<g id=\"" + prefix + std::to_string(i) + "\">";
         if (!group.path.empty()) out += "<path d=\"" + group.path + "\"/>";
         out += group.circles + "</g>\n";
     }
@@ -185,23 +189,27 @@ std::string strokes_text(const Strokes& strokes, const SvgOptions& options, doub
     for (const std::size_t i : walls_last(strokes.groups())) {
         const Group& group = strokes.groups()[i];
         out += "<g><title>" + std::string(name_of(group.role)) + "</title>\n";
-        append_stroke(out, i, darker(color_of(group.role)), group.width_mm);
-        append_stroke(out, i, std::string(color_of(group.role)), core_share * group.width_mm);
+        append_stroke(out, prefix + std::to_string(i), darker(color_of(group.role)),
+                      group.width_mm);
+        append_stroke(out, prefix + std::to_string(i), std::string(color_of(group.role)),
+                      core_share * group.width_mm);
         out += "</g>\n";
     }
     if (options.travels && !strokes.travels().empty()) {
         std::string width, dash;
         append_number(width, thin_mm);
         append_number(dash, 4 * thin_mm);
-        out += "<path id=\"travels\" d=\"" + strokes.travels() + "\" stroke=\"" +
-               std::string(travel_color) + "\" stroke-width=\"" + width + "\" stroke-dasharray=\"" +
-               dash + "\" stroke-linecap=\"butt\"/>\n";
+        out += "<path id=\"" + (prefix == single_prefix ? "" : prefix) + "travels\" d=\"" +
+               strokes.travels() + "\" stroke=\"" + std::string(travel_color) +
+               "\" stroke-width=\"" + width + "\" stroke-dasharray=\"" + dash +
+               "\" stroke-linecap=\"butt\"/>\n";
     }
     if (options.travels && !strokes.wipes().empty()) {
         std::string width;
         append_number(width, wipe_width * thin_mm);
-        out += "<path id=\"wipes\" d=\"" + strokes.wipes() + "\" stroke=\"" +
-               std::string(wipe_color) + "\" stroke-width=\"" + width + "\"/>\n";
+        out += "<path id=\"" + (prefix == single_prefix ? "" : prefix) + "wipes\" d=\"" +
+               strokes.wipes() + "\" stroke=\"" + std::string(wipe_color) + "\" stroke-width=\"" +
+               width + "\"/>\n";
     }
     return out + "</g>\n";
 }
@@ -254,8 +262,40 @@ Result<std::string> layer_svg(Reader& reader, std::uint32_t layer, const SvgOpti
     if (options.travels && strokes.wipe_mm() > 0)
         content.legend.push_back({"wipe", std::string(wipe_color), strokes.wipe_mm(), false});
     const PageFrame frame = frame_of(reader);
-    content.drawing = strokes_text(strokes, options, thin_line_mm(frame));
+    content.drawing = strokes_text(strokes, options, thin_line_mm(frame), single_prefix);
     return page_text(frame, content);
+}
+
+Status print_svg(Reader& reader, const SvgOptions& options, const Sink& take) {
+    const Summary& sum = reader.header().summary;
+    const PageFrame frame{sum.low_x_mm, sum.low_y_mm, sum.high_x_mm, sum.high_y_mm};
+    take(page_head(frame, escaped_xml(reader.header().metadata.source_name)));
+    std::optional<Layer> layer;
+    Strokes strokes(reader.header().quantum);
+    const auto end_layer = [&] {
+        if (!layer) return;
+        std::string z, text = "<g inkscape:groupmode=\"layer\" inkscape:label=\"";
+        append_number(z, layer->state.z_mm);
+        text += std::to_string(layer->index + 1) + ", z = " + z + " mm\" id=\"layer" +
+                std::to_string(layer->index + 1) + '"' +
+                (layer->index > 0 ? " style=\"display:none\">\n" : ">\n");
+        take(text +
+             strokes_text(strokes, options, thin_line_mm(frame),
+                          'l' + std::to_string(layer->index + 1) + '-') +
+             "</g>\n");
+        strokes = Strokes(reader.header().quantum);
+    };
+    while (const Operation* operation = reader.read()) {
+        if (std::holds_alternative<LayerStart>(*operation)) {
+            end_layer();
+            layer = reader.layer();
+        }
+        strokes.add(*operation, reader.path());
+    }
+    if (reader.error()) return *reader.error();
+    end_layer();
+    take("</svg>\n");
+    return Done{};
 }
 
 }  // namespace lyr::format

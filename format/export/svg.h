@@ -15,6 +15,7 @@
 #include <string_view>
 
 #include "base/diagnostic.h"
+#include "format/export/sink.h"
 #include "format/reader.h"
 
 namespace lyr::format {
@@ -22,6 +23,10 @@ namespace lyr::format {
 struct SvgOptions {
     bool travels = true;  // motions without extrusion, thin and dashed; wipes in red
 };
+
+// Calls `take` with all layers in one picture, each a layer of Inkscape's that can be shown and hidden; the first one shows.
+// Their groups are as above, without frame and legend. Reads the file to its end. Errors: the reader's.
+Status print_svg(Reader& reader, const SvgOptions& options, const Sink& take);
 
 // Of the layer with this number (from 0). Leaves the reader behind the layer. Errors: the reader's.
 Result<std::string> layer_svg(Reader& reader, std::uint32_t layer, const SvgOptions& options);

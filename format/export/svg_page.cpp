@@ -205,6 +205,24 @@ double thin_line_mm(const PageFrame& frame) {
     return text_height_mm(frame) / 25;
 }
 
+std::string page_head(const PageFrame& frame, const std::string& title) {
+    const double margin = text_height_mm(frame);
+    const auto text = [](double value) {
+        std::string out;
+        append_number(out, value);
+        return out;
+    };
+    const std::string width = text(frame.high_x_mm - frame.low_x_mm + 2 * margin);
+    const std::string height = text(frame.high_y_mm - frame.low_y_mm + 2 * margin);
+    const std::string left = text(frame.low_x_mm - margin), top = text(-frame.high_y_mm - margin);
+    return "<svg xmlns=\"http://www.w3.org/2000/svg\" "
+           "xmlns:xlink=\"http://www.w3.org/1999/xlink\" "
+           "xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" width=\"" +
+           width + "mm\" height=\"" + height + "mm\" viewBox=\"" + left + ' ' + top + ' ' + width +
+           ' ' + height + "\">\n<title>" + title + "</title>\n<rect x=\"" + left + "\" y=\"" + top +
+           "\" width=\"" + width + "\" height=\"" + height + "\" fill=\"#ffffff\"/>\n";
+}
+
 std::string page_text(const PageFrame& frame, const PageContent& content) {
     return Page(frame, content).text();
 }

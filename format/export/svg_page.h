@@ -39,6 +39,9 @@ std::string darker(std::string_view color);
 // Of what has no width of its own.
 double thin_line_mm(const PageFrame& frame);
 
+// The beginning of a picture without title and legend, which "</svg>" ends. `title` is XML already.
+std::string page_head(const PageFrame& frame, const std::string& title);
+
 std::string page_text(const PageFrame& frame, const PageContent& content);
 
 }  // namespace lyr::format

@@ -177,7 +177,7 @@ TEST_CASE("keys: choices take each of their names, and suggest one for a slip") 
             CHECK(complaint->ends_with("did you mean `" + name + "`?"));
         }
     }
-    CHECK(choices == 7);
+    CHECK(choices == 9);
 }
 
 TEST_CASE("keys: a slip of one letter in any key is told with the key that is meant") {

@@ -9,8 +9,8 @@
 #include <memory>
 #include <span>
 
+#include "base/base64.h"
 #include "base/read_text.h"
-#include "format/export/viewer/base64.h"
 #include "format/export/viewer/viewer_files.h"
 #include "format/reader.h"
 

@@ -1,5 +1,7 @@
 // What is drawn is what is in the file: the picture is parsed back and compared motion by motion.
 
+#include "format/export/svg.h"
+
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -7,7 +9,6 @@
 #include "../files.h"
 #include "../sample.h"
 #include "../worked_example.h"
-#include "format/export/svg.h"
 #include "format/export/svg_text.h"
 #include "svg_reader.h"
 

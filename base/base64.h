@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-namespace lyr::format {
+namespace lyr {
 
 class Base64 {
 public:
@@ -21,4 +21,6 @@ private:
     std::size_t count_ = 0;
 };
 
-}  // namespace lyr::format
+std::string base64(std::span<const std::byte> bytes);
+
+}  // namespace lyr

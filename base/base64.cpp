@@ -1,6 +1,6 @@
-#include "format/export/viewer/base64.h"
+#include "base/base64.h"
 
-namespace lyr::format {
+namespace lyr {
 namespace {
 
 constexpr char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -27,4 +27,12 @@ void Base64::finish(std::string& out) {
     for (std::size_t i = left; i < kept_.size(); ++i) out[out.size() - (i - left) - 1] = '=';
 }
 
-}  // namespace lyr::format
+std::string base64(std::span<const std::byte> bytes) {
+    Base64 encoder;
+    std::string out;
+    encoder.append(bytes, out);
+    encoder.finish(out);
+    return out;
+}
+
+}  // namespace lyr

@@ -1,0 +1,56 @@
+// Motions of a layer as polylines, for formats that have no arcs.
+//
+// Contract
+//  1. Motions that extrude and go on from each other with one kind of role are one polyline; walls of all kinds are one
+//     kind. Lines of a hatch are pairs of points each.
+//  2. Ends of motions are points of it, exactly; an arc is followed within the tolerance by as few chords as that takes, all
+//     alike.
+//  3. A polyline is closed if it ends where it began; the point is then in it once.
+
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "format/operation.h"
+
+namespace lyr::format {
+
+using PlanePoint = std::array<double, 2>;  // mm
+
+struct Polyline {
+    Role role = Role::other;
+    double width_mm = 0;  // at its beginning
+    bool hatch = false;   // pairs of points
+    bool closed = false;
+    std::vector<PlanePoint> points{};
+};
+
+// Signed: positive if it turns counter-clockwise.
+double area_mm2(const std::vector<PlanePoint>& closed);
+
+class PolylineCollector {
+public:
+    PolylineCollector(Quantum quantum, double tolerance_mm)
+        : quantum_(quantum), tolerance_mm_(tolerance_mm) {}
+
+    void take(const Operation& operation, const PathStyle& style);
+    // All since the last call.
+    std::vector<Polyline> finish();
+
+private:
+    PlanePoint in_mm(const Point& point) const;
+    Polyline& open(const Point& from, const PathStyle& style, bool hatch);
+    void turn(double center_x, double center_y, const Point& from, double sweep_rad,
+              const Point& to, const PathStyle& style);
+    void close();
+
+    Quantum quantum_;
+    double tolerance_mm_;
+    std::vector<Polyline> done_{};
+    bool drawing_ = false;
+    Point begin_{}, at_{};
+};
+
+}  // namespace lyr::format

@@ -1,0 +1,402 @@
+// Positions are those of the machine: G92 only moves what is written against them.
+
+#include "format/import/gcode_interpreter.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "base/text.h"
+#include "format/export/gcode_roles.h"
+
+namespace lyr::format {
+namespace {
+
+constexpr double mm_per_inch = 25.4, s_per_min = 60, ms_per_s = 1000, full_fan = 255;
+// G10 where no M207 says how far.
+constexpr double usual_firmware_depth_mm = 1, usual_firmware_mm_s = 40;
+// A depth less than this is rounding: filament is counted in 0.00001 mm, depths in 0.001.
+constexpr double least_depth_mm = 0.0005;
+// More of it is told. Rounding leaves some 0.00001 mm a retraction.
+constexpr double least_pushed_aside_mm = 0.01;
+// No machine is larger (docs/configuration.md), and no coordinate of the format.
+constexpr double farthest_mm = 10'000;
+// Between the halves of one circle: what I and J are rounded by.
+constexpr double same_center_mm = 0.0005;
+constexpr double whole_turn_rad = 2 * std::numbers::pi;
+
+// They tell people, wait, or set what a print's file does not know: nothing is lost.
+constexpr std::array<std::string_view, 24> meaningless{"M73",
+                                                       "M17",
+                                                       "M18",
+                                                       "M84",
+                                                       "M105",
+                                                       "M110",
+                                                       "M114",
+                                                       "M115",
+                                                       "M117",
+                                                       "M118",
+                                                       "M201",
+                                                       "M203",
+                                                       "M205",
+                                                       "M220",
+                                                       "M221",
+                                                       "M400",
+                                                       "M486",
+                                                       "M555",
+                                                       "M862.1",
+                                                       "M862.3",
+                                                       "M900",
+                                                       "M107.1",
+                                                       "EXCLUDE_OBJECT_DEFINE",
+                                                       "EXCLUDE_OBJECT_END"};
+
+bool is_one_of(std::string_view text, std::initializer_list<std::string_view> some) {
+    return std::find(some.begin(), some.end(), text) != some.end();
+}
+
+std::uint32_t whole(std::optional<double> value) {
+    constexpr double most = 255;
+    return static_cast<std::uint32_t>(std::clamp(value.value_or(0), 0.0, most));
+}
+
+// 0: none that a strand has.
+double thickness(std::string_view text) {
+    const double value = finite_number(text).value_or(0);
+    return value >= thinnest_mm && value <= thickest_mm ? value : 0;
+}
+
+bool is_tool(const std::string& name) {
+    return name.size() > 1 && name[0] == 'T' &&
+           std::all_of(name.begin() + 1, name.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+}  // namespace
+
+Diagnostic GcodeInterpreter::error(const std::string& message) const {
+    return {Severity::error, ExitStatus::input, message, {.file = name_, .line = line_}};
+}
+
+bool GcodeInterpreter::begins_layer(std::string_view line) const {
+    const std::size_t semicolon = line.find(';');
+    return facts_.marks_layers && semicolon != std::string_view::npos &&
+           format::begins_layer(trimmed(line.substr(semicolon + 1)));
+}
+
+GcodeLayer GcodeInterpreter::take_layer() {
+    GcodeLayer layer = std::move(layer_);
+    layer_ = {.begin = at_};
+    height_is_layers_ = facts_.marks_layers;
+    return layer;
+}
+
+Status GcodeInterpreter::take(std::string_view text, std::uint32_t number) {
+    line_ = number;
+    if (const auto object = begun_object(text); !object.empty()) {
+        add_object(object);
+        return Done{};
+    }
+    const GcodeLine line = gcode_line(text);
+    if (!line.comment.empty()) take_comment(line.comment);
+    return line.command.empty() ? Status(Done{}) : command(line);
+}
+
+void GcodeInterpreter::add_object(std::string_view name) {
+    const auto found = std::find(facts_.objects.begin(), facts_.objects.end(), escaped(name));
+    append(Object{static_cast<std::uint32_t>(found - facts_.objects.begin()) + 1});
+}
+
+void GcodeInterpreter::take_comment(std::string_view comment) {
+    const auto value = [&](std::string_view key) -> std::optional<std::string_view> {
+        if (!comment.starts_with(key)) return std::nullopt;
+        return trimmed(comment.substr(key.size()));
+    };
+    const auto number = [](std::string_view text) { return finite_number(text).value_or(0); };
+    if (const auto type = value("TYPE:")) role_ = role_of_gcode(*type);
+    if (const auto feature = value("FEATURE:")) role_ = role_of_gcode(*feature);
+    if (const auto role = value("ROLE:")) role_ = role_named(*role);
+    if (const auto width = value("WIDTH:")) width_mm_ = thickness(*width);
+    if (const auto width = value("LINE_WIDTH:")) width_mm_ = thickness(*width);
+    if (const auto height = value("HEIGHT:")) take_height(*height);
+    if (const auto height = value("LAYER_HEIGHT:")) take_height(*height);
+    for (const std::string_view key : {"Z:", "Z_HEIGHT:"})
+        if (const auto z = value(key); z && number(*z) > 0) layer_.stated_z_mm = number(*z);
+    if (comment.starts_with("stop printing object")) append(Object{0});
+}
+
+// The first one of a layer is the layer's own.
+void GcodeInterpreter::take_height(std::string_view value) {
+    height_mm_ = thickness(value);
+    if (height_is_layers_ && height_mm_ > 0) layer_.stated_height_mm = height_mm_;
+    height_is_layers_ = false;
+}
+
+Status GcodeInterpreter::command(const GcodeLine& line) {
+    const std::string& name = line.command;
+    const bool is_moving = is_one_of(name, {"G0", "G1", "G2", "G3"});
+    const bool has_words = name.size() > 1 && name[1] >= '0' && name[1] <= '9' &&
+                           !is_one_of(name, {"M117", "M118", "M23", "M28", "M486"});
+    if (!std::isalpha(static_cast<unsigned char>(name[0])))
+        return error("expected a command, found " + in_quotes(name));
+    std::string why;
+    const auto words = has_words ? gcode_words(line.rest, !is_moving, why) : GcodeWords();
+    if (!words) return error(why);
+    if (name == "G0" || name == "G1") return move(*words);
+    if (name == "G2" || name == "G3") return turn(*words, name == "G3");
+    if (is_one_of(name, {"G18", "G19", "G90.1"}))
+        return Diagnostic{Severity::error,
+                          ExitStatus::unsupported,
+                          name + ": arcs lie in the plane of x and y, their centres are relative",
+                          {.file = name_, .line = line_}};
+    if (name == "G28") {
+        home(*words);
+    } else if (name == "G92") {
+        set_position(*words);
+    } else if (!set_mode(name) && !set_machine(line, *words) && !heat(name, *words) &&
+               std::find(meaningless.begin(), meaningless.end(), name) == meaningless.end()) {
+        unknown(name);
+    }
+    return Done{};
+}
+
+bool GcodeInterpreter::set_mode(const std::string& command) {
+    if (command == "G20" || command == "G21") {
+        unit_mm_ = command == "G20" ? mm_per_inch : 1;
+    } else if (command == "G90" || command == "G91") {
+        absolute_ = command == "G90";
+        if (!facts_.is_klippers) absolute_filament_ = absolute_;
+    } else if (command == "M82" || command == "M83") {
+        absolute_filament_ = command == "M82";
+    } else {
+        return command == "G17";
+    }
+    return true;
+}
+
+bool GcodeInterpreter::set_machine(const GcodeLine& line, const GcodeWords& words) {
+    const std::string& name = line.command;
+    if (name == "G4") {
+        const double time_ms = words['P'].value_or(0) + ms_per_s * words['S'].value_or(0);
+        if (time_ms > 0 && time_ms < std::numeric_limits<std::uint32_t>::max())
+            append(Dwell{static_cast<std::uint32_t>(time_ms)});
+    } else if (name == "G10" && !words['L'] && !words['P']) {
+        if (firmware_depth_mm_ == 0) firmware_depth_mm_ = usual_firmware_depth_mm;
+        drawn_back_mm_ = firmware_depth_mm_;
+        layer_.items.emplace_back(
+            GcodeDraw{drawn_back_mm_, firmware_mm_s_ > 0 ? firmware_mm_s_ : usual_firmware_mm_s});
+    } else if (name == "G11") {
+        drawn_back_mm_ = 0;
+        layer_.items.emplace_back(
+            GcodeDraw{0, firmware_mm_s_ > 0 ? firmware_mm_s_ : usual_firmware_mm_s});
+    } else if (name == "M207") {
+        firmware_depth_mm_ = std::max(0.0, words['S'].value_or(0)) * unit_mm_;
+        firmware_mm_s_ = std::max(0.0, words['F'].value_or(0)) * unit_mm_ / s_per_min;
+    } else if (is_one_of(name, {"M0", "M1", "M25", "M601", "PAUSE"})) {
+        append(Pause{PauseReason::user});
+    } else if (name == "M600") {
+        append(Pause{PauseReason::filament_change});
+    } else if (name == "M204") {
+        if (words['S']) print_mm_s2_ = travel_mm_s2_ = std::max(0.0, *words['S']);
+        if (words['P']) print_mm_s2_ = std::max(0.0, *words['P']);
+        if (words['T']) travel_mm_s2_ = std::max(0.0, *words['T']);
+    } else if (name == "SET_VELOCITY_LIMIT") {
+        const auto limit = finite_number(gcode_parameter(line.rest, "ACCEL"));
+        if (limit && *limit > 0) print_mm_s2_ = travel_mm_s2_ = *limit;
+    } else if (is_tool(name)) {
+        append(Tool{whole(finite_number(name.substr(1)))});
+    } else {
+        return false;
+    }
+    return true;
+}
+
+bool GcodeInterpreter::heat(const std::string& name, const GcodeWords& words) {
+    const double value = std::max(0.0, words['S'] ? *words['S'] : words['R'].value_or(0));
+    const std::uint32_t tool = whole(words['T']);
+    if (name == "M104" || name == "M109")
+        append(Temperature{{HeaterKind::tool, tool}, value, name == "M109"});
+    else if (name == "M140" || name == "M190")
+        append(Temperature{{HeaterKind::bed, 0}, value, name == "M190"});
+    else if (name == "M141" || name == "M191")
+        append(Temperature{{HeaterKind::chamber, 0}, value, name == "M191"});
+    else if (name == "M106")
+        append(Fan{whole(words['P']),
+                   std::clamp(words['S'].value_or(full_fan), 0.0, full_fan) / full_fan});
+    else if (name == "M107")
+        append(Fan{whole(words['P']), 0});
+    else
+        return false;
+    return true;
+}
+
+GcodePoint GcodeInterpreter::target(const GcodeWords& words) const {
+    const auto axis = [&](char letter, double at, double offset) {
+        if (!words[letter]) return at;
+        return absolute_ ? *words[letter] * unit_mm_ - offset : at + *words[letter] * unit_mm_;
+    };
+    return {axis('X', at_.x, offset_.x), axis('Y', at_.y, offset_.y), axis('Z', at_.z, offset_.z)};
+}
+
+double GcodeInterpreter::filament(const GcodeWords& words) {
+    if (!words['E']) return 0;
+    const double value = *words['E'] * unit_mm_;
+    const double pushed = absolute_filament_ ? value - filament_ : value;
+    filament_ = absolute_filament_ ? value : filament_ + value;
+    return pushed;
+}
+
+void GcodeInterpreter::take_speed(const GcodeWords& words) {
+    if (words['F'] && *words['F'] > 0) speed_mm_s_ = *words['F'] * unit_mm_ / s_per_min;
+}
+
+Status GcodeInterpreter::move(const GcodeWords& words) {
+    take_speed(words);
+    const GcodePoint to = target(words);
+    for (const double value : {to.x, to.y, to.z})
+        if (!(std::abs(value) <= farthest_mm)) return error("a position of more than 10 m");
+    if (to == at_)
+        draw(filament(words));
+    else
+        go({.from = at_, .to = to}, words);
+    return Done{};
+}
+
+Status GcodeInterpreter::turn(const GcodeWords& words, bool counter_clockwise) {
+    take_speed(words);
+    GcodeGo arc{.from = at_, .to = target(words)};
+    const double dx = arc.to.x - at_.x, dy = arc.to.y - at_.y, chord = std::hypot(dx, dy);
+    double i = words['I'].value_or(0) * unit_mm_, j = words['J'].value_or(0) * unit_mm_;
+    if (words['R']) {
+        const double radius = *words['R'] * unit_mm_;
+        if (!(chord > 0)) return error("a circle needs I or J, not R");
+        if (std::abs(radius) < chord / 2 * (1 - 1e-6))
+            return error("an arc's ends are farther apart than twice its radius");
+        const double rise = std::sqrt(std::max(0.0, radius * radius - chord * chord / 4));
+        // The shorter way round if R is positive.
+        const double side = (radius > 0) == counter_clockwise ? 1 : -1;
+        i = dx / 2 - side * rise * dy / chord;
+        j = dy / 2 + side * rise * dx / chord;
+    }
+    if (i == 0 && j == 0) return error("an arc needs I, J or R");
+    arc.center_x = at_.x + i;
+    arc.center_y = at_.y + j;
+    for (const double value : {arc.to.x, arc.to.y, arc.to.z, arc.center_x, arc.center_y})
+        if (!(std::abs(value) <= farthest_mm)) return error("a position of more than 10 m");
+    const double begin = std::atan2(-j, -i);
+    const double end = std::atan2(arc.to.y - arc.center_y, arc.to.x - arc.center_x);
+    double sweep = counter_clockwise ? end - begin : begin - end;
+    while (sweep < 0) sweep += whole_turn_rad;
+    if (chord == 0) sweep = whole_turn_rad;
+    arc.sweep_rad = counter_clockwise ? sweep : -sweep;
+    go(arc, words);
+    return Done{};
+}
+
+// Klipper's circles are two halves.
+bool GcodeInterpreter::joins(const GcodeGo& half) {
+    if (layer_.items.empty()) return false;
+    auto* before = std::get_if<GcodeGo>(&layer_.items.back());
+    constexpr double slack_rad = 1e-3;
+    const auto is_half = [](const GcodeGo& go) {
+        return std::abs(std::abs(go.sweep_rad) - whole_turn_rad / 2) < slack_rad;
+    };
+    if (!before || !before->extrudes() || !half.extrudes() || !is_half(*before) || !is_half(half) ||
+        !(half.to == before->from) || (half.sweep_rad > 0) != (before->sweep_rad > 0) ||
+        std::hypot(half.center_x - before->center_x, half.center_y - before->center_y) >
+            same_center_mm ||
+        before->role != half.role || before->width_mm != half.width_mm ||
+        before->height_mm != half.height_mm || before->speed_mm_s != half.speed_mm_s)
+        return false;
+    before->to = half.to;
+    before->sweep_rad = half.sweep_rad > 0 ? whole_turn_rad : -whole_turn_rad;
+    before->filament_mm += half.filament_mm;
+    return true;
+}
+
+void GcodeInterpreter::go(GcodeGo go, const GcodeWords& words) {
+    go.filament_mm = filament(words);
+    if (go.wipes()) drawn_back_mm_ -= go.filament_mm;
+    go.drawn_back_mm = drawn_back_mm_;
+    go.speed_mm_s = speed_mm_s_;
+    go.acceleration_mm_s2 = go.extrudes() ? print_mm_s2_ : travel_mm_s2_;
+    go.role = role_;
+    go.width_mm = width_mm_;
+    go.height_mm = height_mm_;
+    go.line = line_;
+    at_ = go.to;
+    layer_.extrudes = layer_.extrudes || go.extrudes();
+    if (!joins(go)) layer_.items.emplace_back(go);
+}
+
+void GcodeInterpreter::draw(double filament_mm) {
+    if (filament_mm == 0) return;
+    const double depth_mm = drawn_back_mm_ - filament_mm;
+    if (depth_mm < 0) push_aside(-depth_mm);
+    drawn_back_mm_ = depth_mm < least_depth_mm ? 0 : depth_mm;
+    layer_.items.emplace_back(GcodeDraw{drawn_back_mm_, speed_mm_s_});
+}
+
+void GcodeInterpreter::push_aside(double filament_mm) {
+    if (filament_mm > least_depth_mm) {
+        if (pushed_aside_line_ == 0) pushed_aside_line_ = line_;
+        ++pushed_aside_count_;
+    }
+    pushed_aside_mm_ += filament_mm;
+}
+
+void GcodeInterpreter::set_position(const GcodeWords& words) {
+    const bool all = !words['X'] && !words['Y'] && !words['Z'] && !words['E'];
+    const auto axis = [&](char letter, double at, double& offset) {
+        if (all || words[letter]) offset = words[letter].value_or(0) * unit_mm_ - at;
+    };
+    axis('X', at_.x, offset_.x);
+    axis('Y', at_.y, offset_.y);
+    axis('Z', at_.z, offset_.z);
+    if (all || words['E']) filament_ = words['E'].value_or(0) * unit_mm_;
+}
+
+// Where the switches are is the machine's matter: 0.
+void GcodeInterpreter::home(const GcodeWords& words) {
+    const bool all = !words['X'] && !words['Y'] && !words['Z'];
+    const GcodePoint from = at_;
+    const auto axis = [&](char letter, double& at, double& offset) {
+        if (all || words[letter]) at = offset = 0;
+    };
+    axis('X', at_.x, offset_.x);
+    axis('Y', at_.y, offset_.y);
+    axis('Z', at_.z, offset_.z);
+    if (layer_.extrudes && !(from == at_))
+        go({.from = from, .to = at_}, GcodeWords());
+    else if (layer_.items.empty())
+        layer_.begin = at_;
+}
+
+void GcodeInterpreter::unknown(const std::string& command) {
+    const auto known = std::find_if(unknown_.begin(), unknown_.end(),
+                                    [&](const Unknown& other) { return other.command == command; });
+    if (known != unknown_.end())
+        ++known->count;
+    else
+        unknown_.push_back({command, line_, 1});
+}
+
+void GcodeInterpreter::report(Diagnostics& diagnostics) const {
+    const auto warn = [&](const std::string& message, std::uint32_t line) {
+        diagnostics.push_back(
+            {Severity::warning, ExitStatus::input, message, {.file = name_, .line = line}});
+    };
+    for (const Unknown& unknown : unknown_)
+        warn(in_quotes(unknown.command) + " is not known and left out (" +
+                 counted(unknown.count, "time") + ", here first)",
+             unknown.line);
+    if (pushed_aside_line_ == 0 || pushed_aside_mm_ < least_pushed_aside_mm) return;
+    warn("filament pushed while the head stands is left out: " +
+             shortest(std::round(pushed_aside_mm_ * 100) / 100) + " mm in " +
+             counted(pushed_aside_count_, "place") + ", here first",
+         pushed_aside_line_);
+}
+
+}  // namespace lyr::format
