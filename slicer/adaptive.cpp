@@ -119,12 +119,11 @@ std::vector<LayerSpan> spans_of(const Surveyed& surveyed, const FlatnessProfile&
 AdaptiveFigures figures_of(std::span<const LayerSpan> spans, const FlatnessProfile& flatness,
                            const profile::Layer& layer) {
     AdaptiveFigures figures{.thinnest_mm = layer.max_height_mm};
-    if (spans.size() == 1) figures.thinnest_mm = spans[0].height_mm();
     double flattest = 0;
     for (std::size_t i = 0; i < spans.size(); ++i) {
+        if (i == 0) continue;
         const LayerSpan& span = spans[i];
         figures.thickest_mm = std::max(figures.thickest_mm, span.height_mm());
-        if (i == 0) continue;
         figures.thinnest_mm = std::min(figures.thinnest_mm, span.height_mm());
         const double there = flatness.between(span.bottom_mm, span.top_mm);
         flattest = std::max(flattest, there);

@@ -71,20 +71,24 @@ Status check_thin_parts(std::span<const OutlinedLayer> layers, std::span<const L
         ++count;
         if (layers[i].walls.too_thin_mm2 > layers[most].walls.too_thin_mm2) most = i;
     }
-    const std::string limit = shortest(perimeters.min_width_mm) + " mm (perimeters.min_width)";
+    const std::string what = perimeters.thin_walls
+                                 ? "parts thinner than " + shortest(perimeters.min_width_mm) +
+                                       " mm (perimeters.min_width)"
+                                 : "parts that no wall goes around (perimeters.thin_walls is off)";
     if (std::all_of(layers.begin(), layers.end(), [](const auto& l) { return is_empty(l.walls); }))
         return Diagnostic{Severity::error,
                           ExitStatus::geometry,
-                          "nothing to print: the part is nowhere thicker than " + limit,
+                          "nothing to print: no line fits into the part (perimeters.width is " +
+                              shortest(perimeters.width_mm) + " mm, perimeters.thin_walls " +
+                              (perimeters.thin_walls ? "on)" : "off)"),
                           {}};
     if (count == 0) return Done{};
     char area[64];
     std::snprintf(area, sizeof area, "; most here, %.3g mm2", layers[most].walls.too_thin_mm2);
-    diagnostics.push_back(
-        {Severity::warning,
-         ExitStatus::geometry,
-         "parts thinner than " + limit + " are left out in " + counted(count, "layer") + area,
-         {.layer = static_cast<int>(most + 1), .z_mm = spans[most].middle_mm()}});
+    diagnostics.push_back({Severity::warning,
+                           ExitStatus::geometry,
+                           what + " are left out in " + counted(count, "layer") + area,
+                           {.layer = static_cast<int>(most + 1), .z_mm = spans[most].middle_mm()}});
     return Done{};
 }
 

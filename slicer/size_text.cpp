@@ -1,8 +1,10 @@
 // What stepc says of a print's size and layers.
 
 #include <cstdio>
+#include <string_view>
 
 #include "base/text.h"
+#include "slicer/raft.h"
 #include "slicer/slicer.h"
 
 namespace lyr::slicer {
@@ -14,14 +16,17 @@ std::string uniform_text(const profile::Layer& layer) {
     return text;
 }
 
-std::string adaptive_text(const AdaptiveFigures& figures) {
-    char text[80];
-    if (figures.thinnest_mm == figures.thickest_mm)
-        std::snprintf(text, sizeof text, " at %.3g mm a layer", figures.thickest_mm);
-    else
-        std::snprintf(text, sizeof text, " in layers of %.3g to %.3g mm", figures.thinnest_mm,
-                      figures.thickest_mm);
-    return text;
+std::string adaptive_text(const AdaptiveFigures& figures, const profile::Layer& layer,
+                          std::size_t layers) {
+    char first[40], thinnest[40], thickest[40];
+    std::snprintf(first, sizeof first, " in a first layer of %.3g mm", layer.first_height_mm);
+    std::snprintf(thinnest, sizeof thinnest, "%.3g", figures.thinnest_mm);
+    std::snprintf(thickest, sizeof thickest, "%.3g", figures.thickest_mm);
+    std::string text = first;
+    if (layers == 1) return text;
+    text += " and others of ";
+    if (std::string_view(thickest) != thinnest) text += std::string(thinnest) + " to ";
+    return text + thickest + " mm";
 }
 
 std::string steps_text(const AdaptiveFigures& figures, double cusp_mm) {
@@ -43,7 +48,9 @@ std::string size_text(const Summary& summary, const Options& options) {
     char line[160];
     std::snprintf(line, sizeof line, "%.3f x %.3f x %.3f mm", size.x(), size.y(), size.z());
     std::string text = line;
-    text += summary.adaptive ? adaptive_text(*summary.adaptive) : uniform_text(layer);
+    text += summary.adaptive
+                ? adaptive_text(*summary.adaptive, part_layers(options.profile), summary.layers)
+                : uniform_text(layer);
     std::snprintf(line, sizeof line, ", tolerance %g mm\n", options.tolerance().total_mm);
     text += line;
     // Of a single layer there is nothing to compare.

@@ -22,6 +22,8 @@ constexpr double shortest_share = 0.5;
 
 // The width of a strand in a part that is a disc, as a share of the disc's radius: half the part's, and so it is as long.
 constexpr double dot_width_share = 1;
+// Of the least width, how long such a strand is at least: a pin is printed if it is a little wider than the least width.
+constexpr double shortest_dot_share = 0.1;
 
 // Paths are never held to less than what a file can tell.
 constexpr double least_allowed_mm = 1e-4;
@@ -198,7 +200,7 @@ private:
             std::clamp(dot_width_share * radius_mm, request_.min_width_mm, request_.max_width_mm);
         const double length = 2 * radius_mm - width;
         area_mm2 = std::max(area_mm2, std::numbers::pi * radius_mm * radius_mm);
-        if (length < shortest_share * request_.min_width_mm) {
+        if (length < shortest_dot_share * request_.min_width_mm) {
             made_.left_out_mm2 += area_mm2;
             return;
         }

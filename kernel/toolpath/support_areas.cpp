@@ -60,8 +60,10 @@ public:
 
     SupportAreas areas() {
         result_.layers.resize(levels_.size());
+        is_cut_.resize(levels_.size());
         for (std::size_t i = levels_.size(); i-- > 0;) descend(i);
-        if (request_.on_bed_only) keep_on_bed();
+        for (std::size_t i = 1; i < levels_.size(); ++i)
+            if (!result_.layers[i].empty()) keep_standing(i);
         return std::move(result_);
     }
 
@@ -84,6 +86,7 @@ private:
                                           : combined(all.contours, clear, Operation::subtract,
                                                      request_.allowed_mm, sliver_mm());
         settle(i, all.unresolved + left.unresolved + rooms_[i].unresolved);
+        is_cut_[i] = !clear.empty();
         result_.layers[i] = std::move(left.contours);
         if (!begin_[i].empty()) look_for_room(i);
     }
@@ -91,32 +94,77 @@ private:
     // Into what is narrower no line fits: it would go all the way down and never be printed.
     double sliver_mm() const { return request_.width_mm / 2; }
 
-    void look_for_room(std::size_t i) {
+    bool holds(std::size_t i, std::size_t above) const {
         const OffsetResult middles =
             offset(result_.layers[i],
                    {.distance_mm = -request_.width_mm / 2, .allowed_mm = request_.allowed_mm});
+        return !combined(middles.contours, levels_[above].overhang, Operation::intersect,
+                         request_.allowed_mm)
+                    .contours.empty();
+    }
+
+    // Under the uppermost edge of a slope there may be room beside the part only: then support reaches out by a line more.
+    void reach_out(std::size_t i, std::size_t above) {
+        const SupportLevel& level = levels_[above];
+        const OffsetResult reach =
+            offset(level.part, {.distance_mm = request_.gap_xy_mm + request_.width_mm,
+                                .allowed_mm = request_.allowed_mm});
+        const RegionResult contact =
+            combined(level.overhang, reach.contours, Operation::intersect, request_.allowed_mm);
+        const RegionResult free = combined(contact.contours, rooms_[i].clear, Operation::subtract,
+                                           request_.allowed_mm, sliver_mm());
+        RegionResult all =
+            combined(result_.layers[i], free.contours, Operation::unite, request_.allowed_mm);
+        settle(i, reach.unresolved.has_value() + contact.unresolved + free.unresolved +
+                      all.unresolved);
+        result_.layers[i] = std::move(all.contours);
+    }
+
+    void look_for_room(std::size_t i) {
         for (const std::size_t above : begin_[i]) {
-            const RegionResult held = combined(middles.contours, rooms_[above].contact,
-                                               Operation::intersect, request_.allowed_mm);
-            if (held.contours.empty()) result_.out_of_reach.push_back(above);
+            if (holds(i, above)) continue;
+            reach_out(i, above);
+            if (!holds(i, above)) result_.out_of_reach.push_back(above);
         }
     }
 
-    void keep_on_bed() {
-        for (std::size_t i = 1; i < levels_.size(); ++i) {
-            Contours& layer = result_.layers[i];
-            if (layer.empty()) continue;
-            RegionResult standing = combined(layer, result_.layers[i - 1], Operation::intersect,
-                                             request_.allowed_mm, sliver_mm());
-            settle(i, standing.unresolved);
-            layer = std::move(standing.contours);
+    // What of a layer is over support or, but for the gap, over the part.
+    void keep_standing(std::size_t i) {
+        // Nothing was taken off below, so the layer below is as large.
+        if (!is_cut_[i - 1] && !request_.on_bed_only) return;
+        RegionResult standing = combined(
+            result_.layers[i], request_.on_bed_only ? result_.layers[i - 1] : carried_over(i),
+            Operation::intersect, request_.allowed_mm, sliver_mm());
+        settle(i, standing.unresolved);
+        is_cut_[i] = true;
+        result_.layers[i] = std::move(standing.contours);
+    }
+
+    // What lies below a layer, with the gaps between support and part, which lines reach over.
+    Contours carried_over(std::size_t i) {
+        const double low_mm = levels_[i].bottom_mm - request_.gap_z_mm + resolution_mm;
+        std::vector<Region> below{result_.layers[i - 1]};
+        for (std::size_t k = i; k-- > 0;) {
+            below.push_back(levels_[k].part);
+            if (levels_[k].top_mm <= low_mm) break;
         }
+        std::erase_if(below, [](const Region& region) { return region.empty(); });
+        if (below.empty()) return {};
+        const RegionResult all = united(below, request_.allowed_mm);
+        const double half_gap_mm = request_.gap_xy_mm / 2 + sliver_mm();
+        const OffsetResult closed =
+            offset(all.contours, {.distance_mm = half_gap_mm, .allowed_mm = request_.allowed_mm});
+        OffsetResult carried = offset(
+            closed.contours, {.distance_mm = -half_gap_mm, .allowed_mm = request_.allowed_mm});
+        settle(i, all.unresolved + closed.unresolved.has_value() + carried.unresolved.has_value());
+        return std::move(carried.contours);
     }
 
     std::span<const SupportLevel> levels_;
     std::span<const LayerRoom> rooms_;
     const SupportRequest& request_;
     std::vector<std::vector<std::size_t>> begin_;  // by layer: overhangs whose support begins here
+    std::vector<bool> is_cut_{};  // by layer: whether it may be smaller than the one above
     SupportAreas result_{};
 };
 
@@ -191,7 +239,7 @@ LayerRoom room_of(std::span<const SupportLevel> levels, std::size_t layer,
     parts.push_back(beside);
     result.clear = take(united(parts, request.allowed_mm));
     if (level.overhang.empty()) return result;
-    const Contours reach = grown(request.gap_xy_mm + request.width_mm);
+    const Contours reach = request.gap_xy_mm < request.width_mm ? grown(request.width_mm) : beside;
     result.contact =
         take(combined(level.overhang, reach, Operation::intersect, request.allowed_mm));
     return result;

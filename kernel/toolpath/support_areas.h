@@ -3,10 +3,11 @@
 // Contract
 //  1. The support of a layer is nowhere nearer than gap_xy_mm to the part in that layer, and there is no part over or
 //     under it that is nearer than gap_z_mm, as heights of layers go: the air is at least as high as the gap.
-//  2. Support reaches out beside the part that hangs over it by gap_xy_mm and a line: there is room for a line under an
-//     edge that hardly leans out, and under a point. What an overhang asks for begins in the highest layer that leaves the
-//     gap under it, and goes on downwards, apart from what 1 takes away: to the bed, to the part, or, with `on_bed_only`,
-//     not at all if that is not the bed.
+//  2. Support reaches out beside the part that hangs over it by gap_xy_mm, or by a line if that is more: there is room for
+//     a line under a point too; and by both where no line fits otherwise, as under the uppermost edge of a slope. What an
+//     overhang asks for begins in the highest layer that leaves the gap under it, and goes on downwards, apart from what 1
+//     takes away: to the bed, to the part, or, with `on_bed_only`, not at all if that is not the bed. It lies over
+//     support or the part, but for gaps between these of up to gap_xy_mm.
 //  3. Interfaces are the `interface_layers` highest layers under an overhang, and as many over the part where support stands
 //     on it. With sparse support they share the corners where they meet.
 //  4. An overhang that is so near to the bed that no layer fits between them is not supported: it lies within the gap over it.

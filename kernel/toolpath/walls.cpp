@@ -1,10 +1,12 @@
 // As long as a boundary that moves inwards loses no edge and meets no other part of itself, its length changes evenly
-// with the distance; so the area between two distances is their difference times the mean of the lengths. Where it is
-// not, a wall whose boundary keeps clear of itself and which reaches all that lies outside it has lost but edges. Only
-// the others are compared with what is wide enough for them.
+// with the distance; so the area between two distances is their difference times the mean of the lengths. But so it is
+// where all of it shrinks to a point, and a tip that is sharper than a wall can fill goes back evenly too: contours must
+// be as many, and tips blunt. Where it is not so, a wall whose boundary keeps clear of itself and which reaches all that
+// lies outside it has lost but edges. Only the others are compared with what is wide enough for them.
 
 #include "kernel/toolpath/walls.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -23,6 +25,7 @@ constexpr double unseen_mm = 0.25;
 
 // Corners as sharp as two fifths of a radian are wide enough: beyond, a nozzle cannot tell the tip from a line.
 constexpr double mitre_limit = 5;
+const double bluntest_tip_cosine = -std::cos(2 * std::asin(1 / mitre_limit));
 
 // By how much parts that are wide enough are cut wider than they are, so that their own boundary is left as it is; a
 // share of the width.
@@ -37,6 +40,8 @@ public:
 
     Walls make() {
         inner_.resize(request_.count + 1);
+        if (!request_.thin_walls && request_.count > 0 && !base_.empty())
+            walls_.left_out_mm2 = walls_.too_thin_mm2 = std::max(0.0, unreached_mm2(base_, 0));
         for (std::uint32_t depth = 0; depth < request_.count && !base_.empty(); ++depth) {
             if (!is_whole(depth)) separate_narrow(depth);
             add(inner(depth), depth);
@@ -75,18 +80,42 @@ private:
         if (!(depth == 0 ? request_.thin_walls : request_.gap_fill)) return true;
         const std::vector<Contour>& before = depth == 0 ? base_ : inner(depth - 1);
         const double before_mm = depth == 0 ? 0 : middle_mm(depth - 1);
-        const bool reaches = is_even(before, inner(depth), middle_mm(depth) - before_mm);
+        const bool reaches =
+            is_even(before, inner(depth), middle_mm(depth) - before_mm) && !has_sharp_tip(before);
         if (reaches &&
             is_even(inner(depth), inner(depth + 1), middle_mm(depth + 1) - middle_mm(depth)))
             return true;
-        return !is_narrow(depth) && (reaches || is_reached(outer(depth), depth));
+        // What vanishes further in may be smaller than its own wall.
+        const bool vanishes = inner(depth + 1).size() < inner(depth).size();
+        return !vanishes && !is_narrow(depth) && (reaches || is_reached(outer(depth), depth));
     }
 
     // Whether the boundaries at two distances are what an even change leads to from one to the other.
     static bool is_even(Region outer, Region inner, double distance_mm) {
+        if (outer.size() != inner.size()) return false;
         const double between = area_mm2(outer) - area_mm2(inner);
         const double expected = distance_mm * (length_mm(outer) + length_mm(inner)) / 2;
         return std::abs(between - expected) <= unseen_mm * unseen_mm;
+    }
+
+    // Of the direction before and behind the corners to the left. Smooth ones cost a comparison.
+    static bool has_sharp_tip(Region region) {
+        return std::any_of(region.begin(), region.end(), [](const Contour& contour) {
+            const auto* path = std::get_if<Path>(&contour);
+            if (!path || path->segments.empty()) return false;
+            const std::size_t count = path->segments.size();
+            Point2 from = path->start;
+            Vector2 before = end_tangent(count > 1 ? path->segments[count - 2].end : path->start,
+                                         path->segments.back());
+            for (const Segment& segment : path->segments) {
+                const Vector2 after = start_tangent(from, segment);
+                if (before.dot(after) < bluntest_tip_cosine && cross(before, after) > 0)
+                    return true;
+                before = end_tangent(from, segment);
+                from = segment.end;
+            }
+            return false;
+        });
     }
 
     // Whether the wall's sides are near each other along more than is left alone.
@@ -95,13 +124,19 @@ private:
                unseen_mm * unseen_mm;
     }
 
-    // Whether the wall, as it is, and its flank are all that the walls before leave outside of it.
-    bool is_reached(Region outside, std::uint32_t depth) {
+    // How much of what the walls before leave is outside of the wall, as it is, and its flank.
+    double unreached_mm2(Region outside, std::uint32_t depth) {
         const double flank_mm = outwards_mm(depth);
         const double reached_mm2 =
             area_mm2(inner(depth)) +
             strip_mm2(Boundary(inner(depth)), flank_mm, mitre_limit * flank_mm);
-        return area_mm2(outside) - reached_mm2 <= unseen_mm * unseen_mm;
+        return area_mm2(outside) - reached_mm2;
+    }
+
+    // What has no wall at all may be small, and still is a part that would be missed.
+    bool is_reached(Region outside, std::uint32_t depth) {
+        return inner(depth).size() >= outside.size() &&
+               unreached_mm2(outside, depth) <= unseen_mm * unseen_mm;
     }
 
     std::vector<Contour> offset_by(const BoundedRegion& region, double distance_mm, Corner corner) {
@@ -147,13 +182,16 @@ private:
     void separate_narrow(std::uint32_t depth) {
         const std::vector<Contour> outside = outer(depth);
         std::vector<Contour> wall = inner(depth), wide = wide_parts(wall, middle_mm(depth));
-        const bool is_cut = area_mm2(wall) - area_mm2(wide) > unseen_mm * unseen_mm;
+        const bool is_cut =
+            wide.size() < wall.size() || area_mm2(wall) - area_mm2(wide) > unseen_mm * unseen_mm;
         if (!is_cut && is_reached(outside, depth)) return;
         if (is_cut) wall = std::move(wide);
         const std::vector<Contour> covered =
             offset_by(BoundedRegion(wall), outwards_mm(depth), Corner::mitre);
         // Else only edges have vanished.
-        if (!is_cut && area_mm2(outside) - area_mm2(covered) <= unseen_mm * unseen_mm) return;
+        if (!is_cut && covered.size() >= outside.size() &&
+            area_mm2(outside) - area_mm2(covered) <= unseen_mm * unseen_mm)
+            return;
         add_narrow(outside, covered, depth);
         set_base(std::move(wall), depth);
     }

@@ -37,7 +37,7 @@ struct Walls {
     std::vector<std::uint32_t> depths{};  // by strand; 0: outermost
     std::vector<Contour> inside{};
     std::vector<Contour> thin{}, gaps{};
-    double left_out_mm2 = 0, too_thin_mm2 = 0;
+    double left_out_mm2 = 0, too_thin_mm2 = 0;  // without `thin_walls`, of all that no wall fits into
     std::size_t second_method = 0, unresolved = 0;  // of the offsets and region operations
 };
 

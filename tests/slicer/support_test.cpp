@@ -347,7 +347,7 @@ TEST_CASE("support 1: under a lying cylinder it is as wide as the arc beyond the
         for (const Contour& contour : s.plan.area(i))
             widest_mm = std::max(widest_mm, lyr::region::box_of(contour).max().x());
     // By how far support reaches out beside the part, within what the surface of the limit leans out in a layer.
-    const double reach_mm = s.options.profile.support.gap_xy_mm + s.options.profile.skin.width_mm;
+    const double reach_mm = s.options.profile.skin.width_mm;
     CHECK(std::abs(widest_mm - edge_mm - reach_mm) < 0.2 * std::tan(50 * pi / 180));
 }
 
@@ -413,6 +413,22 @@ TEST_CASE("support 4: an overhang with no room under it is warned of") {
     REQUIRE(s.diagnostics.size() == 1);
     CHECK(s.diagnostics[0].message.find("no room for support") != std::string::npos);
     CHECK(s.diagnostics[0].where.layer > 0);
+}
+
+TEST_CASE("support 2: over a foot as large as the roof it reaches out no farther than the foot") {
+    const Model part = together(table(), at(box(14, 10, 2), 0, 0, 1));
+    for (const double gap_xy_mm : {0.2, 0.4, 0.8, 2.0})
+        for (const double turn_rad : {0.0, 0.6}) {
+            Options options = grid();
+            options.profile.support.gap_xy_mm = gap_xy_mm;
+            const Supported s(turned(part, turn_rad, Vector3::UnitZ()), options);
+            CHECK(s.volume_mm3() > 100);
+            for (std::size_t i = 0; i < s.spans.size(); ++i)
+                over(s.plan.area(i), 0.1, [&](const Point2& p) {
+                    if (!s.in_part(2, p) && !s.parts[2].is_near(p, round_off_mm))
+                        FAIL_CHECK("support of layer ", i, " is beside the foot");
+                });
+        }
 }
 
 TEST_CASE("support 2: the uppermost layers of a slope have room for a line under them") {

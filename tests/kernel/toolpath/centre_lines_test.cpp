@@ -331,10 +331,10 @@ TEST_CASE("centre lines 5: a part that is no longer than wide gets a short stran
         CHECK(made.strands[0].width_mm == doctest::Approx(0.3));
         CHECK(outside_mm(region, made) <= allowed_mm);
     }
-    const CentreLines small = lines_in({FullCircle{{1, 2}, 0.14, true}});
+    const CentreLines small = lines_in({FullCircle{{1, 2}, 0.109, true}});
     CHECK(small.strands.empty());
-    CHECK(small.left_out_mm2 == doctest::Approx(pi * 0.14 * 0.14));
-    const CentreLines least = lines_in({FullCircle{{1, 2}, 0.16, true}});
+    CHECK(small.left_out_mm2 == doctest::Approx(pi * 0.109 * 0.109));
+    const CentreLines least = lines_in({FullCircle{{1, 2}, 0.111, true}});
     REQUIRE(least.strands.size() == 1);
     CHECK(least.strands[0].width_mm == 0.2);
 }

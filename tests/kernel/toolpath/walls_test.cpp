@@ -98,6 +98,47 @@ TEST_CASE(
     CHECK(close.too_thin_mm2 < 0.02);
 }
 
+TEST_CASE(
+    "walls 2: what shrinks to a point is thin if no wall fits, however many there are of it") {
+    for (const double size_mm : {0.25, 0.3, 0.4, 0.44, 0.46, 0.6, 0.7})
+        for (const int count : {1, 2, 3, 7})
+            for (const bool on_plate : {false, true}) {
+                CAPTURE(size_mm);
+                CAPTURE(count);
+                Contours region;
+                for (int i = 0; i < count; ++i)
+                    region.push_back(i % 2 == 0
+                                         ? Contour(rectangle(2 * i, 0, 2 * i + size_mm, size_mm))
+                                         : Contour(circle(2 * i, 0, size_mm / 2)));
+                if (on_plate) region.push_back(rectangle(0, 10, 20, 30));
+                const double area = total_area(Contours(region.begin(), region.begin() + count));
+                const Walls made = walls(region, request(2));
+                CHECK(made.strands.size() == (on_plate ? 2 : 0));
+                CHECK(total_area(made.thin) + made.left_out_mm2 ==
+                      doctest::Approx(area).epsilon(0.01));
+                CHECK(made.left_out_mm2 < 0.05 * area);
+            }
+}
+
+TEST_CASE(
+    "walls 2: a tip that is too sharp for walls is thin up to the least width, with gaps behind") {
+    for (const double rise_mm : {3.0, 6.0, 12.0})
+        for (int turn = 0; turn < 3; ++turn) {
+            CAPTURE(rise_mm);
+            const Motion motion{turn * 0.9, {1, 2}, turn == 1};
+            const Contours upright{Path{{0, 0}, {{{40, 0}}, {{40, rise_mm}}, {{0, 0}}}}};
+            const Contours wedge = lyr::testing::moved(upright, motion);
+            const Walls made = walls(wedge, request(3));
+            CHECK(made.unresolved == 0);
+            CHECK(accounted_mm2(made) == doctest::Approx(total_area(wedge)).epsilon(0.02));
+            // The tip from where it is 0.2 mm wide to where a wall begins; how much of that is left out besides, corners.
+            const double slope = rise_mm / 40;
+            CHECK(total_area(made.thin) > 0.5 * (0.45 * 0.45 - 0.2 * 0.2) / slope / 2);
+            CHECK(made.too_thin_mm2 < 1.5 * 0.2 * 0.2 / slope / 2);
+            if (rise_mm < 5) CHECK(!made.gaps.empty());
+        }
+}
+
 TEST_CASE("walls 2: a thin rib on a plate leaves the plate's walls as they are") {
     const Path shape{{0, 0},
                      {{{30, 0}},
