@@ -1,5 +1,5 @@
 # make            builds stepc, lyrrun and lyrview into build/ (installs missing Debian packages first)
-# make demo       slices the gearbox base, simulates the print, draws a layer: all into demo/
+# make demo       slices the gearbox base, simulates the print, draws a layer and a page: all into demo/
 # make test       builds and runs every test
 # make test-bits  a million random bits of a large print flipped, one at a time: both readers find each
 # make sanitize   the same tests under the address and undefined-behaviour sanitizers, into build-sanitize/
@@ -35,7 +35,8 @@ demo: all
 	$(BUILD)/stepc fixtures/parts/gearbox_base.step -o demo/gearbox_base.lyr
 	$(BUILD)/lyrrun demo/gearbox_base.lyr --simulate
 	$(BUILD)/lyrview demo/gearbox_base.lyr --layer 36 --no-travel -o demo/layer-36.svg
-	@echo "The picture: demo/layer-36.svg"
+	$(BUILD)/lyrview demo/gearbox_base.lyr -o demo/gearbox_base.html
+	@echo "The picture: demo/layer-36.svg; the print, in a browser: demo/gearbox_base.html"
 
 test: test-setup all
 	cmake --build $(BUILD) -j $(JOBS)

@@ -48,12 +48,9 @@ lyr.colors = (() => {
             this.high = -Infinity;
         }
 
-        // True: it has become wider.
         take(value) {
-            if (value >= this.low && value <= this.high) return false;
             this.low = Math.min(this.low, value);
             this.high = Math.max(this.high, value);
-            return true;
         }
 
         share(value) {
@@ -69,14 +66,13 @@ lyr.colors = (() => {
             this.hidden = new Set(); // roles
         }
 
-        // The styles of a layer that was decoded. True: a range has become wider.
+        // The styles of a layer that was decoded.
         take(motions, duration_s) {
-            let wider = this.ranges.time.take(duration_s);
+            this.ranges.time.take(duration_s);
             for (const style of motions.styles) {
                 if (style.role < 0) continue;
-                for (const mode of ["speed", "flow"]) wider = this.ranges[mode].take(modes[mode].of(style)) || wider;
+                for (const mode of ["speed", "flow"]) this.ranges[mode].take(modes[mode].of(style));
             }
-            return wider;
         }
 
         // [r, g, b] of an extruding style.

@@ -116,5 +116,5 @@ lyr.print = (() => {
         }
     }
 
-    return {Print, RoleSums};
+    return {Print};
 })();

@@ -69,9 +69,7 @@ lyr.timing = (() => {
         }
 
         set(index, duration_s) {
-            if (this.durations_s[index] === duration_s) return false;
             this.durations_s[index] = duration_s;
-            return true;
         }
 
         update() {
