@@ -16,7 +16,7 @@ constexpr std::uint16_t first_date = 1 << 5 | 1;  // 1980-01-01
 constexpr int raw_deflate = -15, memory_level = 8;
 
 void put(std::string& out, std::uint64_t value, int bytes) {
-    for (int i = 0; i < bytes; ++i) out += static_cast<char>(value >> (8 * i) & 0xff);
+    for (; bytes > 0; --bytes, value >>= 8) out += static_cast<char>(value & 0xff);
 }
 
 }  // namespace

@@ -113,10 +113,10 @@ double GcodeLayers::layer_z_mm(const GcodeLayer& layer) const {
 }
 
 // The first items of a layer lead to its height. Those before go to the layer below; a way that a layer's start implies
-// is left out; settings are of the state. How many are dealt with.
-std::size_t GcodeLayers::begin_items(GcodeLayer& layer, double z_mm, LayerState& state) {
+// is left out; settings are of the state. What is left to do in the layer.
+std::vector<GcodeItem> GcodeLayers::begin_items(GcodeLayer& layer, double z_mm, LayerState& state) {
     GcodePoint at = layer.begin;
-    std::vector<GcodeItem> below;
+    std::vector<GcodeItem> below, left;
     std::size_t i = 0;
     const auto is_wait = [](const Operation& operation) {
         const auto* heat = std::get_if<Temperature>(&operation);
@@ -131,6 +131,9 @@ std::size_t GcodeLayers::begin_items(GcodeLayer& layer, double z_mm, LayerState&
             if (is_wait(*operation) && waits_) {
                 if (arrives) break;
                 below.push_back(item);
+            } else if (std::holds_alternative<Dwell>(*operation) ||
+                       std::holds_alternative<Pause>(*operation)) {
+                left.push_back(item);  // there is no layer below
             }
             set(*operation);
         } else if (const auto* draw = std::get_if<GcodeDraw>(&item)) {
@@ -160,7 +163,9 @@ std::size_t GcodeLayers::begin_items(GcodeLayer& layer, double z_mm, LayerState&
     state.start_y_mm = at.y;
     if (travel_mm_s > 0) state.travel_speed_mm_s = travel_mm_s;
     state.travel_acceleration_mm_s2 = std::round(travel_mm_s2);
-    return i;
+    left.insert(left.end(), layer.items.begin() + static_cast<std::ptrdiff_t>(i),
+                layer.items.end());
+    return left;
 }
 
 GcodeLayers::Begun GcodeLayers::begin(GcodeLayer layer) {
@@ -168,8 +173,7 @@ GcodeLayers::Begun GcodeLayers::begin(GcodeLayer layer) {
     const double z_mm = layer_z_mm(layer);
     LayerState& state = begun.state;
     if (waits_) state.travel_speed_mm_s = waits_->state.travel_speed_mm_s;
-    const std::size_t used = begin_items(layer, z_mm, state);
-    begun.items.assign(layer.items.begin() + static_cast<std::ptrdiff_t>(used), layer.items.end());
+    begun.items = begin_items(layer, z_mm, state);
     note_speeds(begun.items);
     state.z_mm = z_mm;
     const double above_mm = z_mm - below_z_mm_ > same_z_mm ? z_mm - below_z_mm_ : z_mm;

@@ -48,7 +48,7 @@ private:
 
     Begun begin(GcodeLayer layer);
     double layer_z_mm(const GcodeLayer& layer) const;
-    std::size_t begin_items(GcodeLayer& layer, double z_mm, LayerState& state);
+    std::vector<GcodeItem> begin_items(GcodeLayer& layer, double z_mm, LayerState& state);
     void note_speeds(const std::vector<GcodeItem>& items);
     void set(const Operation& operation);
     Status write(Begun layer);

@@ -52,6 +52,37 @@ TEST_CASE("lyrview: drawings of one layer or all, layers for other machines") {
     CHECK(!fs::exists(folder / "d.dxf"));
 }
 
+TEST_CASE("lyrview: other programs' readers take drawings and packages without complaint") {
+    const Folder folder = with_print("export-readers");
+    CHECK(folder
+              .run("lyrview a.lyr --layer all -o a.dxf && lyrview a.lyr --layer 2 --no-travel -o "
+                   "b.dxf && "
+                   "lyrview a.lyr -o a.3mf")
+              .status == 0);
+    // ezdxf's audit, and Python's own readers of ZIP and XML.
+    folder.write("read.py",
+                 "import ezdxf, zipfile\n"
+                 "import xml.etree.ElementTree as xml\n"
+                 "for name in ('a.dxf', 'b.dxf'):\n"
+                 "    drawing = ezdxf.readfile(name)\n"
+                 "    audit = drawing.audit()\n"
+                 "    assert not audit.errors and not audit.fixes\n"
+                 "    kinds = {}\n"
+                 "    for entity in drawing.modelspace():\n"
+                 "        kinds[entity.dxftype()] = kinds.get(entity.dxftype(), 0) + 1\n"
+                 "    print(name, *(f'{kind} {kinds[kind]}' for kind in sorted(kinds)))\n"
+                 "package = zipfile.ZipFile('a.3mf')\n"
+                 "assert package.testzip() is None\n"
+                 "model = xml.fromstring(package.read('3D/3dmodel.model'))\n"
+                 "space = '{http://schemas.microsoft.com/3dmanufacturing/slice/2015/07}'\n"
+                 "print('slices', len(list(model.iter(space + 'slice'))))\n");
+    const Ended read = folder.run("/usr/bin/python3 read.py");
+    CAPTURE(read.err);
+    CHECK(read.status == 0);
+    CHECK(read.out.find("b.dxf ARC 12 LINE 2\n") != std::string::npos);
+    CHECK(read.out.find("slices 3\n") != std::string::npos);
+}
+
 TEST_CASE("lyrview: options of an export that make no sense are refused") {
     const Folder folder = with_print("export-wrong");
     const auto refuses = [&](const char* script, const char* part) {

@@ -204,6 +204,15 @@ TEST_CASE("gcode import 3: layers are those of comments, or of heights") {
               .layers.size() == 1);
 }
 
+TEST_CASE("gcode import: what waits before the first layer is not lost") {
+    const Imported print =
+        imported("M190 S60\nG4 P250\nM0\nM109 S200\n" + begin + "G1 X20" + ten_mm);
+    REQUIRE(print.layers.size() == 1);
+    CHECK(print.layers[0].state.temperatures.size() == 2);
+    CHECK(print.all<Dwell>().size() == 1);
+    CHECK(print.all<Pause>().size() == 1);
+}
+
 TEST_CASE("gcode import 3: comments of OrcaSlicer, Bambu Studio and Simplify3D are understood") {
     const std::string moves = "G0 X0 Y0 Z0.3\nG1 X10 E0.5\n", above = "G0 Z0.5\nG1 X20 E0.5\n";
     struct Dialect {
