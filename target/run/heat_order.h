@@ -8,7 +8,8 @@
 //  2. Reaching a mark is one store, waiting at a gate one load now and then: nothing here blocks the real-time
 //     thread.
 //  3. A tick of HeatAttendant carries out the orders that were reached, in order; one that waits holds those
-//     after it up until its heaters have reached their targets.
+//     after it up until its heaters have reached their targets. After longest_wait_s all heaters go off instead:
+//     what has not come by then never will, and nobody may be there.
 
 #pragma once
 
@@ -24,6 +25,8 @@
 #include "target/thermal/control.h"
 
 namespace lyr::run {
+
+inline constexpr double longest_wait_s = 3'600;
 
 struct HeatOrder {
     // By config's number; none: as before.
@@ -78,11 +81,13 @@ public:
 
 private:
     bool is_reached(const HeatOrder& order) const;
+    void give_up(const HeatOrder& order);
 
     OrderQueue& orders_;
     Marks& marks_;
     thermal::HeatControl& control_;
     std::optional<HeatOrder> waiting_;
+    int waited_ticks_ = 0;
 };
 
 }  // namespace lyr::run

@@ -227,6 +227,31 @@ TEST_CASE(
     CHECK(simulated(file, "1e6 open tool").ok());
 }
 
+TEST_CASE("heat order 3: a wait that has no end ends with all heaters off") {
+    const std::string file = write_print("heat_forever", {draw_square}, {}, heated(210, 60));
+    // Just too weak: within what this one may stray, and never there.
+    config::Printer loose = config::generic_printer();
+    loose.heaters[config::heater_tool]->guard.stray_c = 30;
+    const Result<SimulationReport> weak = simulated(file, "0 weak tool 0.455", loose);
+    REQUIRE_FALSE(weak.ok());
+    CHECK(weak.error().status == ExitStatus::machine);
+    CHECK_MESSAGE(
+        weak.error().message.find("after an hour of waiting for 210") != std::string::npos,
+        weak.error().message);
+    // Colder than the room.
+    const Result<SimulationReport> cold =
+        simulated(write_print("heat_cooler",
+                              {draw_square,
+                               [](const Pen& pen) {
+                                   pen.layer.temperature(bed, 10, true);
+                                   draw_square(pen);
+                               }},
+                              {}, heated(210, 60)));
+    REQUIRE_FALSE(cold.ok());
+    CHECK_MESSAGE(cold.error().message.find("heater bed") != std::string::npos,
+                  cold.error().message);
+}
+
 TEST_CASE("simulate 4: what the printer cannot heat is told, and the motions are made cold") {
     config::Printer printer = config::generic_printer();
     printer.heaters[config::heater_bed].reset();
