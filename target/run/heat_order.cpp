@@ -7,6 +7,15 @@
 
 namespace lyr::run {
 
+bool join(HeatOrder& order, const HeatOrder& next) {
+    if (order.is_gate()) return false;
+    for (std::size_t i = 0; i < order.targets_c.size(); ++i)
+        if (next.targets_c[i]) order.targets_c[i] = next.targets_c[i];
+    order.waits = next.waits;
+    if (next.fan_duty) order.fan_duty = next.fan_duty;
+    return true;
+}
+
 std::optional<std::size_t> heater_number(const format::Heater& heater) {
     switch (heater.kind) {
         case format::HeaterKind::bed:

@@ -37,6 +37,9 @@ struct HeatOrder {
     bool is_gate() const { return waits[0] || waits[1] || waits[2]; }
 };
 
+// To be carried out after `order` at the same place, put into it. False: it must stay apart, since `order` waits.
+bool join(HeatOrder& order, const HeatOrder& next);
+
 // None: no printer has this heater.
 std::optional<std::size_t> heater_number(const format::Heater& heater);
 

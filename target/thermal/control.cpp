@@ -40,11 +40,11 @@ void HeatControl::tune(std::size_t number, const RelayTune& relay) {
 
 void HeatControl::tick(double time_s) {
     for (Channel& channel : channels_) {
-        sample(channel, time_s);
         if (trip_) break;
-        control(channel, time_s);
+        sample(channel, time_s);
+        if (!trip_) control(channel, time_s);
     }
-    if (trip_) return;
+    // After a trip, too: fans go on with their pulses.
     for (std::size_t i = 0; i < channels_.size(); ++i) shares_[i] = channels_[i].status.power;
     if (has_fan_) shares_.back() = fan_;
     if (const Status applied = stage_.apply(shares_, time_s); !applied)

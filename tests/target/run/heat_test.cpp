@@ -126,6 +126,15 @@ TEST_CASE("demands 1: what the machine cannot heat, or pushes cold, is refused w
         check_refused(file, printer, "min_extrude_c");
         CHECK(refused_of(file, printer)[0].where.layer == 2);
     }
+    // Pushing back what was drawn back is pushing, too.
+    check_refused(write_print("heat_unretract", {[](const Pen& pen) {
+                                  draw_square(pen);
+                                  pen.layer.retract();
+                                  pen.layer.temperature(tool, 0, false);
+                                  pen.layer.unretract();
+                              }},
+                              {}, heated(210, 60)),
+                  printer, "min_extrude_c");
     const auto raised = [](bool wait) {
         return write_print("heat_raised", {[&](const Pen& pen) {
                                pen.layer.temperature(tool, 200, wait);
@@ -204,6 +213,37 @@ TEST_CASE("executor 7: waits in the middle of a layer bring the head to rest, an
                   true});
     REQUIRE(cold.ok());
     CHECK(cold->print_time_s == doctest::Approx(flying->print_time_s));
+}
+
+TEST_CASE("step stream 2: orders between two moves are one, and memory does not grow with them") {
+    const auto storm = [](bool wait) {
+        return write_print("heat_storm", {[=](const Pen& pen) {
+                               pen.path();
+                               pen.travel(0, 0);
+                               for (int i = 0; i < 9'000; ++i) {
+                                   pen.layer.fan(0, i % 2 ? 0.2 : 0.4);
+                                   pen.layer.temperature(tool, i % 2 ? 205 : 206, wait);
+                               }
+                               pen.line(5, 0);
+                           }},
+                           {}, heated(210, 60));
+    };
+    const Result<SimulationReport> flies = simulated(storm(false));
+    CHECK_MESSAGE(flies.ok(), message_of(flies));
+    const Result<SimulationReport> refused = simulated(storm(true));
+    REQUIRE_FALSE(refused.ok());
+    CHECK(refused.error().status == ExitStatus::input);
+    HeatOrder order, next;
+    order.targets_c[config::heater_bed] = 60;
+    order.fan_duty = 0.1;
+    next.targets_c[config::heater_tool] = 210;
+    next.waits[config::heater_tool] = true;
+    REQUIRE(join(order, next));
+    CHECK(order.targets_c[config::heater_bed] == 60);
+    CHECK(order.targets_c[config::heater_tool] == 210);
+    CHECK(order.fan_duty == 0.1);
+    CHECK(order.is_gate());
+    CHECK_FALSE(join(order, next));
 }
 
 TEST_CASE(
