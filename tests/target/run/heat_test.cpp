@@ -3,8 +3,9 @@
 
 #include <doctest/doctest.h>
 
-#include <chrono>
+#include <atomic>
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 
@@ -362,48 +363,86 @@ TEST_CASE("executor 7: a gate holds events back until its order is done, and lea
     }
 }
 
-TEST_CASE("print 2: a guard that fires in a real print takes heat and motion away") {
+namespace {
+
+// A real print's threads on mock lines, whose sensors read 26 °C until one breaks.
+struct Board {
     config::Printer printer = config::generic_printer();
-    printer.pulse.late_limit_ns = 10'000'000'000;
-    const std::string file = write_print("heat_real", {draw_square}, {}, heated(210, 60));
     gpio::MonotonicClock clock;
     std::vector<gpio::LineWrite> writes, heat_writes;
-    gpio::MockChip chip(8, clock, gpio::recorder(writes));
+    gpio::MockChip chip{8, clock, gpio::recorder(writes)};
+    std::atomic<bool> bed_is_broken{false};
     Heating heating;
-    auto heat_chip = std::make_unique<gpio::MockChip>(2, clock, gpio::recorder(heat_writes));
-    const gpio::MockChip& heaters = *heat_chip;
-    std::vector<thermal::Output> outputs;
-    std::vector<thermal::HeaterPort> ports;
-    // Warm at first, and then the wire of the bed's sensor breaks.
-    const auto from = std::chrono::steady_clock::now();
-    for (const std::size_t i : {config::heater_tool, config::heater_bed}) {
-        outputs.push_back({thermal::LineOutput{outputs.size(), thermal::SlowPwm(0.5)}, true});
-        const auto read = [i, from]() -> Result<double> {
-            const bool broken = i == config::heater_bed && std::chrono::steady_clock::now() - from >
-                                                               std::chrono::milliseconds(400);
-            return broken ? 4'095.0 : 3'900.0;
-        };
-        ports.push_back({i, *printer.heaters[i], std::make_unique<thermal::MockSensor>(read)});
+
+    Board() {
+        printer.pulse.late_limit_ns = 10'000'000'000;
+        std::vector<thermal::Output> outputs;
+        std::vector<thermal::HeaterPort> ports;
+        for (const std::size_t i : {config::heater_tool, config::heater_bed}) {
+            outputs.push_back({thermal::LineOutput{outputs.size(), thermal::SlowPwm(0.5)}, true});
+            const auto read = [this, i]() -> Result<double> {
+                return i == config::heater_bed && bed_is_broken ? 4'095.0 : 3'900.0;
+            };
+            ports.push_back({i, *printer.heaters[i], std::make_unique<thermal::MockSensor>(read)});
+        }
+        heating.chip = std::make_unique<gpio::MockChip>(2, clock, gpio::recorder(heat_writes));
+        heating.stage =
+            std::make_unique<thermal::PowerStage>(std::move(outputs), heating.chip.get());
+        heating.control =
+            std::make_unique<thermal::HeatControl>(std::move(ports), false, *heating.stage);
     }
-    heating.chip = std::move(heat_chip);
-    heating.stage = std::make_unique<thermal::PowerStage>(std::move(outputs), heating.chip.get());
-    heating.control =
-        std::make_unique<thermal::HeatControl>(std::move(ports), false, *heating.stage);
-    const Result<PrintReport> report = print({file, printer, false, {}}, chip, clock, &heating);
-    const auto took = std::chrono::steady_clock::now() - from;
+    // It heated, and at the end nothing is on; it waited for heat, and no axis moved.
+    void check_ended() const {
+        CHECK(chip.released());
+        CHECK(chip.levels() == 0);
+        bool was_on = false, stepped = false;
+        for (const gpio::LineWrite& write : heat_writes) was_on = was_on || write.levels != 0;
+        for (const gpio::LineWrite& write : writes)
+            stepped = stepped || (write.levels & all_step_bits) != 0;
+        CHECK(was_on);
+        CHECK_FALSE(stepped);
+        REQUIRE_FALSE(heat_writes.empty());
+        CHECK(heat_writes.back().levels == 0);
+    }
+};
+
+}  // namespace
+
+TEST_CASE("print 2: a guard that fires in a real print takes heat and motion away") {
+    Board board;
+    const std::string file = write_print("heat_real", {draw_square}, {}, heated(210, 60));
+    int calls = 0;
+    const ProgressSink breaks = [&](const Progress&) { board.bed_is_broken = ++calls > 3; };
+    const Result<PrintReport> report =
+        print({file, board.printer, false, breaks}, board.chip, board.clock, &board.heating);
     REQUIRE_FALSE(report.ok());
     CHECK(report.error().status == ExitStatus::machine);
     CHECK_MESSAGE(report.error().message.find("heater bed") != std::string::npos,
                   report.error().message);
-    CHECK(took < std::chrono::seconds(10));
-    CHECK(chip.released());
-    CHECK(chip.levels() == 0);
-    CHECK(heaters.levels() == 0);
-    bool was_on = false;
-    for (const gpio::LineWrite& write : heat_writes) was_on = was_on || write.levels != 0;
-    CHECK(was_on);
-    // It waited for heat, and no axis moved.
-    for (const gpio::LineWrite& write : writes) CHECK((write.levels & all_step_bits) == 0);
+    board.check_ended();
+}
+
+TEST_CASE("print 3, 4: SIGTERM while a print waits for heat ends both") {
+    Board board;
+    const std::string file = write_print("heat_stopped", {draw_square}, {}, heated(210, 60));
+    int calls = 0;
+    const ProgressSink stops = [&](const Progress&) {
+        if (++calls == 3) std::raise(SIGTERM);
+    };
+    const Result<PrintReport> report =
+        print({file, board.printer, false, stops}, board.chip, board.clock, &board.heating);
+    REQUIRE_FALSE(report.ok());
+    CHECK(report.error().status == ExitStatus::stopped);
+    board.check_ended();
+}
+
+TEST_CASE("print 2: a file that heats is not printed cold by mistake") {
+    Board board;
+    const std::string file = write_print("heat_mistake", {draw_square}, {}, heated(210, 60));
+    const Result<PrintReport> report =
+        print({file, board.printer, false, {}}, board.chip, board.clock);
+    REQUIRE_FALSE(report.ok());
+    CHECK(board.writes.empty());
 }
 
 TEST_CASE("heating 1: what is missing to heat is told by its key or file") {
