@@ -296,15 +296,21 @@ TEST_CASE("heat order 3: a wait that has no end ends with all heaters off") {
 TEST_CASE("simulate 4: what the printer cannot heat is told, and the motions are made cold") {
     config::Printer printer = config::generic_printer();
     printer.heaters[config::heater_bed].reset();
-    const Result<SimulationReport> report =
-        simulated(write_print("heat_no_bed", {draw_square}, {}, heated(210, 60)), "", printer);
+    printer.part_fan.reset();
+    const std::string file = write_print("heat_no_bed", {[](const Pen& pen) {
+                                             pen.layer.fan(0, 1);
+                                             draw_square(pen);
+                                         }},
+                                         {}, heated(210, 60));
+    const Result<SimulationReport> report = simulated(file, "", printer);
     REQUIRE_MESSAGE(report.ok(), message_of(report));
     CHECK(report->heat.empty());
     CHECK(report->within_limits());
-    REQUIRE(report->notes.size() == 2);
+    REQUIRE(report->notes.size() == 3);
     CHECK(report->notes[0].message.find("not heated") != std::string::npos);
-    CHECK(report->notes[1].message.find("no heater for the bed") != std::string::npos);
-    CHECK(report->notes[1].severity == Severity::warning);
+    CHECK(report->notes[1].message.find("fans are not switched") != std::string::npos);
+    CHECK(report->notes[2].message.find("no heater for the bed") != std::string::npos);
+    CHECK(report->notes[2].severity == Severity::warning);
 }
 
 TEST_CASE("executor 7: a gate holds events back until its order is done, and leaves on request") {
