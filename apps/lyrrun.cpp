@@ -36,7 +36,8 @@ constexpr Program program{
     "  lyrrun part.lyr --simulate                         the print on a generic printer, without "
     "one\n"
     "  lyrrun part.lyr --simulate --printer printer.toml  on your own\n"
-    "  lyrrun part.lyr --simulate --trace part.vcd        every edge of every line, for GTKWave\n"
+    "  lyrrun part.lyr --simulate --trace part.vcd        every edge of the motors' lines, for "
+    "GTKWave\n"
     "  lyrrun part.lyr --printer printer.toml             print\n"
     "  lyrrun part.lyr --printer printer.toml --no-heat   move the machine, heaters off\n"
     "  lyrrun --printer printer.toml --tune tool=210      find a heater's kp, ki and kd\n"
@@ -71,7 +72,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
     add_flag(app, "--simulate", arguments.simulate,
              "Run without a machine and without waiting; check every pulse against the file");
     add_file(app, "--trace", arguments.trace_path,
-             "Write the simulated lines as a wave file (VCD); -: standard output");
+             "Write the simulated lines of the motors as a wave file (VCD); -: standard output");
     add_flag(app, "--json", arguments.json, "Report the simulation as one JSON object");
     add_flag(app, "--no-heat", arguments.no_heat,
              "Pass over the temperatures and fans that the file sets");

@@ -181,6 +181,7 @@ void FilePath::draw_back(double depth_mm) {
     const double feed_mm = drawn_back_mm_ - depth_mm;
     drawn_back_mm_ = depth_mm;
     if (feed_mm == 0) return;
+    if (feed_mm > 0) note_pushing();
     PathCurve curve;
     curve.to_mm = at_mm_;
     curve.to_mm[axis_e] = fed_mm(feed_mm);
@@ -220,11 +221,14 @@ void FilePath::extrude(PathCurve& curve, double way_mm) {
     const double filament_mm =
         way_mm * format::cross_section_mm2(reader_.path()) / filament_area_mm2_;
     totals_.filament_mm += filament_mm;
-    if (filament_mm > 0 && sure_tool_c_ < demands_.coldest_extrusion_c.value_or(sure_tool_c_ + 1)) {
-        demands_.coldest_extrusion_c = sure_tool_c_;
-        demands_.coldest_layer = totals_.layers;
-    }
+    if (filament_mm > 0) note_pushing();
     curve.to_mm[axis_e] = fed_mm(filament_mm);
+}
+
+void FilePath::note_pushing() {
+    if (demands_.coldest_extrusion_c && *demands_.coldest_extrusion_c <= sure_tool_c_) return;
+    demands_.coldest_extrusion_c = sure_tool_c_;
+    demands_.coldest_layer = totals_.layers;
 }
 
 double FilePath::fed_mm(double feed_mm) {

@@ -73,6 +73,8 @@ private:
     void straight(const AxisValues& to_mm, bool extrudes);
     void turn(PathCurve curve, const format::Point& to);
     void append(const PathCurve& curve);
+    // Filament is pushed at the temperature that the tool has now.
+    void note_pushing();
     // Sets the extruder's end for a curve of this length.
     void extrude(PathCurve& curve, double way_mm);
     // The extruder's coordinate after this much more; compensated summation, so that hundreds of

@@ -3,7 +3,18 @@
 
 #include "target/run/heat_order.h"
 
+#include <cstdio>
+
 namespace lyr::run {
+
+bool join(HeatOrder& order, const HeatOrder& next) {
+    if (order.is_gate()) return false;
+    for (std::size_t i = 0; i < order.targets_c.size(); ++i)
+        if (next.targets_c[i]) order.targets_c[i] = next.targets_c[i];
+    order.waits = next.waits;
+    if (next.fan_duty) order.fan_duty = next.fan_duty;
+    return true;
+}
 
 std::optional<std::size_t> heater_number(const format::Heater& heater) {
     switch (heater.kind) {
@@ -71,18 +82,38 @@ bool HeatAttendant::is_reached(const HeatOrder& order) const {
     return true;
 }
 
+void HeatAttendant::give_up(const HeatOrder& order) {
+    for (std::size_t i = 0; i < order.waits.size(); ++i) {
+        const thermal::HeaterStatus* status = control_.status(i);
+        if (!order.waits[i] || !status || control_.reached(i)) continue;
+        char text[300];
+        std::snprintf(text, sizeof text,
+                      "heater %s: %.1f °C after an hour of waiting for %g °C: is it strong enough, "
+                      "and the room cool enough? All heaters are off and stay so until lyrrun is "
+                      "started again",
+                      std::string(config::heater_names[i]).c_str(), status->temperature_c,
+                      status->target_c);
+        return control_.stop({thermal::GuardKind::too_slow, text});
+    }
+}
+
 void HeatAttendant::tick() {
     const std::uint32_t reached = marks_.reached.load(std::memory_order_acquire);
     std::uint32_t done = marks_.done.load(std::memory_order_relaxed);
+    ++waited_ticks_;
     while (done != reached) {
         if (!waiting_) {
             waiting_ = orders_.pop();
             if (!waiting_) break;
+            waited_ticks_ = 0;
             for (std::size_t i = 0; i < waiting_->targets_c.size(); ++i)
                 if (const auto target_c = waiting_->targets_c[i]) control_.set_target(i, *target_c);
             if (waiting_->fan_duty) control_.set_fan(*waiting_->fan_duty);
         }
-        if (!is_reached(*waiting_)) break;
+        if (!is_reached(*waiting_)) {
+            if (waited_ticks_ * thermal::tick_s > longest_wait_s) give_up(*waiting_);
+            break;
+        }
         waiting_.reset();
         marks_.done.store(++done, std::memory_order_release);
     }

@@ -8,7 +8,8 @@
 //  2. Reaching a mark is one store, waiting at a gate one load now and then: nothing here blocks the real-time
 //     thread.
 //  3. A tick of HeatAttendant carries out the orders that were reached, in order; one that waits holds those
-//     after it up until its heaters have reached their targets.
+//     after it up until its heaters have reached their targets. After longest_wait_s all heaters go off instead:
+//     what has not come by then never will, and nobody may be there.
 
 #pragma once
 
@@ -25,6 +26,8 @@
 
 namespace lyr::run {
 
+inline constexpr double longest_wait_s = 3'600;
+
 struct HeatOrder {
     // By config's number; none: as before.
     std::array<std::optional<double>, config::heater_count> targets_c;
@@ -33,6 +36,9 @@ struct HeatOrder {
 
     bool is_gate() const { return waits[0] || waits[1] || waits[2]; }
 };
+
+// To be carried out after `order` at the same place, put into it. False: it must stay apart, since `order` waits.
+bool join(HeatOrder& order, const HeatOrder& next);
 
 // None: no printer has this heater.
 std::optional<std::size_t> heater_number(const format::Heater& heater);
@@ -78,11 +84,13 @@ public:
 
 private:
     bool is_reached(const HeatOrder& order) const;
+    void give_up(const HeatOrder& order);
 
     OrderQueue& orders_;
     Marks& marks_;
     thermal::HeatControl& control_;
     std::optional<HeatOrder> waiting_;
+    int waited_ticks_ = 0;
 };
 
 }  // namespace lyr::run

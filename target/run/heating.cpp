@@ -7,12 +7,14 @@
 #include <thread>
 
 #include "target/gpio/gpiod_chip.h"
+#include "target/run/line_keeper.h"
 
 namespace lyr::run {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::duration<double> tick{thermal::tick_s};
+constexpr int silent_ms = static_cast<int>(thermal::silent_s * 1'000);
 
 Diagnostic missing(const config::Printer& printer, const std::string& key) {
     return {Severity::error,
@@ -40,6 +42,12 @@ Status append(Outputs& all, const std::string& section, const std::optional<conf
     if (!channel) return channel.error();
     all.outputs.push_back({std::move(*channel), heats});
     return Done{};
+}
+
+// Kernel PWM channels belong to nobody: what is left on one stays.
+void drop_channels(const config::Printer& printer) {
+    for (const std::optional<config::Heater>& heater : printer.heaters)
+        if (heater && !heater->pwm.empty()) (void)thermal::KernelPwm::open(heater->pwm);
 }
 
 Result<thermal::HeaterPort> open_port(const config::Printer& printer, std::size_t number) {
@@ -80,7 +88,9 @@ Result<Heating> open_heating(const config::Printer& printer) {
             return added.error();
     Heating heating;
     if (!all.requests.empty()) {
-        auto chip = gpio::open_gpiod_chip(all.requests);
+        const auto open = [&] { return gpio::open_gpiod_chip(all.requests); };
+        const auto drop = [&] { drop_channels(printer); };
+        auto chip = keep_lines(all.requests.size(), open, silent_ms, drop);
         if (!chip) return chip.error();
         heating.chip = std::move(*chip);
     }

@@ -187,7 +187,8 @@ Heed heed(const Inspection& inspection, const SimulationJob& job) {
     };
     result.heats = asked && !job.no_heat && possible(false);
     if (result.heats) return result;
-    const Diagnostics why = asked && !job.no_heat ? std::move(result.notes) : Diagnostics{};
+    Diagnostics why;
+    if (asked && !job.no_heat) why.push_back(result.notes.back());
     (void)possible(true);
     result.notes.insert(result.notes.end(), why.begin(), why.end());
     return result;

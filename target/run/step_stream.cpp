@@ -10,6 +10,8 @@ namespace lyr::run {
 namespace {
 
 constexpr std::size_t batch_events = 2048;
+// Orders that stand between the moves of a full planner are fewer, but for a file that means harm.
+constexpr std::size_t most_waiting = 4 * motion::Planner::default_capacity;
 
 motion::Kinematics kinematics_of(const config::Printer& printer) {
     motion::Cartesian cartesian;
@@ -89,7 +91,8 @@ Status StepStream::plan() {
             return Done{};
         }
         if (const auto* rest = std::get_if<Rest>(&*held_)) planner_.dwell(rest->time_s);
-        if (const auto* order = std::get_if<HeatOrder>(&*held_)) plan(*order);
+        if (const auto* order = std::get_if<HeatOrder>(&*held_))
+            if (Status planned = plan(*order); !planned) return planned;
         if (const auto* move = std::get_if<motion::Move>(&*held_))
             if (Status pushed = plan(*move); !pushed) return pushed;
         held_.reset();
@@ -109,10 +112,18 @@ Status StepStream::plan(const motion::Move& move) {
     return Done{};
 }
 
-void StepStream::plan(const HeatOrder& order) {
-    if (!orders_) return;
+Status StepStream::plan(const HeatOrder& order) {
+    if (!orders_) return Done{};
     if (order.is_gate()) planner_.dwell(0);
+    const bool same_place = !waiting_.empty() && waiting_.back().before_move == pushed_;
+    if (same_place && join(waiting_.back().order, order)) return Done{};
+    if (waiting_.size() == most_waiting)
+        return Diagnostic{Severity::error,
+                          ExitStatus::input,
+                          "the file waits for temperatures thousands of times between two moves",
+                          {.file = path_}};
     waiting_.push_back({pushed_, order});
+    return Done{};
 }
 
 void StepStream::give_orders(std::int64_t time_ns, std::vector<Step>& steps) {

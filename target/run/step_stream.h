@@ -48,7 +48,7 @@ private:
 
     Status plan();
     Status plan(const motion::Move& move);
-    void plan(const HeatOrder& order);
+    Status plan(const HeatOrder& order);
     // The orders that stand before the move that begins.
     void give_orders(std::int64_t time_ns, std::vector<Step>& steps);
 

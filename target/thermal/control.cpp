@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <utility>
 
 namespace lyr::thermal {
@@ -40,11 +41,11 @@ void HeatControl::tune(std::size_t number, const RelayTune& relay) {
 
 void HeatControl::tick(double time_s) {
     for (Channel& channel : channels_) {
-        sample(channel, time_s);
         if (trip_) break;
-        control(channel, time_s);
+        sample(channel, time_s);
+        if (!trip_) control(channel, time_s);
     }
-    if (trip_) return;
+    // After a trip, too: fans go on with their pulses.
     for (std::size_t i = 0; i < channels_.size(); ++i) shares_[i] = channels_[i].status.power;
     if (has_fan_) shares_.back() = fan_;
     if (const Status applied = stage_.apply(shares_, time_s); !applied)
@@ -78,8 +79,28 @@ void HeatControl::sample(Channel& channel, double time_s) {
     if (channel.guard.bad > 0) return;
     status.temperature_c = sample.measured.temperature_c;
     status.highest_c = std::max(status.highest_c, status.temperature_c);
+    check_extrusion(channel);
     const bool near = std::abs(status.temperature_c - status.target_c) <= reached_c;
     channel.near_s = near ? channel.near_s + tick_s : 0;
+}
+
+void HeatControl::check_extrusion(const Channel& channel) {
+    const HeaterStatus& status = channel.status;
+    const config::Heater& settings = channel.port.settings;
+    const double least_c = settings.min_extrude_c;
+    const bool may_push = channel.port.number == config::heater_tool &&
+                          channel.guard.phase == Phase::holding && status.target_c >= least_c;
+    // A target at the limit itself may be strayed from like any other.
+    const double limit_c = std::min(least_c, status.target_c - settings.guard.stray_c);
+    if (!may_push || status.temperature_c >= limit_c) return;
+    char text[300];
+    std::snprintf(
+        text, sizeof text,
+        "heater tool: %.1f °C, colder than min_extrude_c = %g, though it had reached %g °C: "
+        "look at the heater's wires and supply, and at draughts; all heaters are off and "
+        "stay so until lyrrun is started again",
+        status.temperature_c, least_c, status.target_c);
+    stop({GuardKind::falling, text});
 }
 
 void HeatControl::control(Channel& channel, double time_s) {

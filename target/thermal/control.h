@@ -7,6 +7,8 @@
 //     does nothing any more. trip() says why. So do a write that fails and a trip from outside (stop()).
 //  3. A guard fires for a heater that is off, too, if its sensor is bad: a sensor that cannot be trusted when
 //     cold will not be when hot.
+//     A tool that had reached its target, and is colder than min_extrude_c and further off than stray_c,
+//     trips at once: it may be pushing filament.
 //  4. reached() is true when the reading has been within reached_c of the target for reached_s, or there is no
 //     target; never after a trip.
 //  5. Nothing here asks for the time: the same sequence of readings and times gives the same powers.
@@ -73,6 +75,7 @@ private:
     };
 
     void sample(Channel& channel, double time_s);
+    void check_extrusion(const Channel& channel);
     void control(Channel& channel, double time_s);
     const Channel* find(std::size_t number) const;
 

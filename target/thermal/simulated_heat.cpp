@@ -58,7 +58,7 @@ void SimulatedHeat::tick() {
     ++ticks_;
     time_s_ = static_cast<double>(ticks_) * tick_s;
     const gpio::LineMask levels = chip_.levels();
-    const bool fan_on = has_fan_ && (levels & gpio::line_bit(bodies_.size()));
+    const bool fan_on = is_fan_on();
     for (std::size_t i = 0; i < bodies_.size(); ++i)
         bodies_[i].body.advance(tick_s, (levels & gpio::line_bit(i)) != 0, fan_on ? 1 : 0);
     for (; next_fault_ < faults_.size() && faults_[next_fault_].time_s <= time_s_; ++next_fault_) {

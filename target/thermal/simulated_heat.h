@@ -35,6 +35,9 @@ public:
     const HeatControl& control() const { return control_; }
     double time_s() const { return time_s_; }
     bool any_heater_on() const { return (chip_.levels() & heater_lines()) != 0; }
+    bool is_fan_on() const {
+        return has_fan_ && (chip_.levels() & gpio::line_bit(bodies_.size())) != 0;
+    }
     std::optional<double> tripped_s() const { return tripped_s_; }
     std::optional<double> heaters_off_s() const { return off_s_; }
     // Of a heater that the printer has.

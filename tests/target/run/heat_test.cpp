@@ -3,8 +3,9 @@
 
 #include <doctest/doctest.h>
 
-#include <chrono>
+#include <atomic>
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 
@@ -126,6 +127,15 @@ TEST_CASE("demands 1: what the machine cannot heat, or pushes cold, is refused w
         check_refused(file, printer, "min_extrude_c");
         CHECK(refused_of(file, printer)[0].where.layer == 2);
     }
+    // Pushing back what was drawn back is pushing, too.
+    check_refused(write_print("heat_unretract", {[](const Pen& pen) {
+                                  draw_square(pen);
+                                  pen.layer.retract();
+                                  pen.layer.temperature(tool, 0, false);
+                                  pen.layer.unretract();
+                              }},
+                              {}, heated(210, 60)),
+                  printer, "min_extrude_c");
     const auto raised = [](bool wait) {
         return write_print("heat_raised", {[&](const Pen& pen) {
                                pen.layer.temperature(tool, 200, wait);
@@ -206,6 +216,37 @@ TEST_CASE("executor 7: waits in the middle of a layer bring the head to rest, an
     CHECK(cold->print_time_s == doctest::Approx(flying->print_time_s));
 }
 
+TEST_CASE("step stream 2: orders between two moves are one, and memory does not grow with them") {
+    const auto storm = [](bool wait) {
+        return write_print("heat_storm", {[=](const Pen& pen) {
+                               pen.path();
+                               pen.travel(0, 0);
+                               for (int i = 0; i < 9'000; ++i) {
+                                   pen.layer.fan(0, i % 2 ? 0.2 : 0.4);
+                                   pen.layer.temperature(tool, i % 2 ? 205 : 206, wait);
+                               }
+                               pen.line(5, 0);
+                           }},
+                           {}, heated(210, 60));
+    };
+    const Result<SimulationReport> flies = simulated(storm(false));
+    CHECK_MESSAGE(flies.ok(), message_of(flies));
+    const Result<SimulationReport> refused = simulated(storm(true));
+    REQUIRE_FALSE(refused.ok());
+    CHECK(refused.error().status == ExitStatus::input);
+    HeatOrder order, next;
+    order.targets_c[config::heater_bed] = 60;
+    order.fan_duty = 0.1;
+    next.targets_c[config::heater_tool] = 210;
+    next.waits[config::heater_tool] = true;
+    REQUIRE(join(order, next));
+    CHECK(order.targets_c[config::heater_bed] == 60);
+    CHECK(order.targets_c[config::heater_tool] == 210);
+    CHECK(order.fan_duty == 0.1);
+    CHECK(order.is_gate());
+    CHECK_FALSE(join(order, next));
+}
+
 TEST_CASE(
     "simulate 4: a guard that fires ends the print with its message, its time and its layer") {
     const std::string file =
@@ -227,18 +268,49 @@ TEST_CASE(
     CHECK(simulated(file, "1e6 open tool").ok());
 }
 
+TEST_CASE("heat order 3: a wait that has no end ends with all heaters off") {
+    const std::string file = write_print("heat_forever", {draw_square}, {}, heated(210, 60));
+    // Just too weak: within what this one may stray, and never there.
+    config::Printer loose = config::generic_printer();
+    loose.heaters[config::heater_tool]->guard.stray_c = 30;
+    const Result<SimulationReport> weak = simulated(file, "0 weak tool 0.455", loose);
+    REQUIRE_FALSE(weak.ok());
+    CHECK(weak.error().status == ExitStatus::machine);
+    CHECK_MESSAGE(
+        weak.error().message.find("after an hour of waiting for 210") != std::string::npos,
+        weak.error().message);
+    // Colder than the room.
+    const Result<SimulationReport> cold =
+        simulated(write_print("heat_cooler",
+                              {draw_square,
+                               [](const Pen& pen) {
+                                   pen.layer.temperature(bed, 10, true);
+                                   draw_square(pen);
+                               }},
+                              {}, heated(210, 60)));
+    REQUIRE_FALSE(cold.ok());
+    CHECK_MESSAGE(cold.error().message.find("heater bed") != std::string::npos,
+                  cold.error().message);
+}
+
 TEST_CASE("simulate 4: what the printer cannot heat is told, and the motions are made cold") {
     config::Printer printer = config::generic_printer();
     printer.heaters[config::heater_bed].reset();
-    const Result<SimulationReport> report =
-        simulated(write_print("heat_no_bed", {draw_square}, {}, heated(210, 60)), "", printer);
+    printer.part_fan.reset();
+    const std::string file = write_print("heat_no_bed", {[](const Pen& pen) {
+                                             pen.layer.fan(0, 1);
+                                             draw_square(pen);
+                                         }},
+                                         {}, heated(210, 60));
+    const Result<SimulationReport> report = simulated(file, "", printer);
     REQUIRE_MESSAGE(report.ok(), message_of(report));
     CHECK(report->heat.empty());
     CHECK(report->within_limits());
-    REQUIRE(report->notes.size() == 2);
+    REQUIRE(report->notes.size() == 3);
     CHECK(report->notes[0].message.find("not heated") != std::string::npos);
-    CHECK(report->notes[1].message.find("no heater for the bed") != std::string::npos);
-    CHECK(report->notes[1].severity == Severity::warning);
+    CHECK(report->notes[1].message.find("fans are not switched") != std::string::npos);
+    CHECK(report->notes[2].message.find("no heater for the bed") != std::string::npos);
+    CHECK(report->notes[2].severity == Severity::warning);
 }
 
 TEST_CASE("executor 7: a gate holds events back until its order is done, and leaves on request") {
@@ -297,48 +369,86 @@ TEST_CASE("executor 7: a gate holds events back until its order is done, and lea
     }
 }
 
-TEST_CASE("print 2: a guard that fires in a real print takes heat and motion away") {
+namespace {
+
+// A real print's threads on mock lines, whose sensors read 26 °C until one breaks.
+struct Board {
     config::Printer printer = config::generic_printer();
-    printer.pulse.late_limit_ns = 10'000'000'000;
-    const std::string file = write_print("heat_real", {draw_square}, {}, heated(210, 60));
     gpio::MonotonicClock clock;
     std::vector<gpio::LineWrite> writes, heat_writes;
-    gpio::MockChip chip(8, clock, gpio::recorder(writes));
+    gpio::MockChip chip{8, clock, gpio::recorder(writes)};
+    std::atomic<bool> bed_is_broken{false};
     Heating heating;
-    auto heat_chip = std::make_unique<gpio::MockChip>(2, clock, gpio::recorder(heat_writes));
-    const gpio::MockChip& heaters = *heat_chip;
-    std::vector<thermal::Output> outputs;
-    std::vector<thermal::HeaterPort> ports;
-    // Warm at first, and then the wire of the bed's sensor breaks.
-    const auto from = std::chrono::steady_clock::now();
-    for (const std::size_t i : {config::heater_tool, config::heater_bed}) {
-        outputs.push_back({thermal::LineOutput{outputs.size(), thermal::SlowPwm(0.5)}, true});
-        const auto read = [i, from]() -> Result<double> {
-            const bool broken = i == config::heater_bed && std::chrono::steady_clock::now() - from >
-                                                               std::chrono::milliseconds(400);
-            return broken ? 4'095.0 : 3'900.0;
-        };
-        ports.push_back({i, *printer.heaters[i], std::make_unique<thermal::MockSensor>(read)});
+
+    Board() {
+        printer.pulse.late_limit_ns = 10'000'000'000;
+        std::vector<thermal::Output> outputs;
+        std::vector<thermal::HeaterPort> ports;
+        for (const std::size_t i : {config::heater_tool, config::heater_bed}) {
+            outputs.push_back({thermal::LineOutput{outputs.size(), thermal::SlowPwm(0.5)}, true});
+            const auto read = [this, i]() -> Result<double> {
+                return i == config::heater_bed && bed_is_broken ? 4'095.0 : 3'900.0;
+            };
+            ports.push_back({i, *printer.heaters[i], std::make_unique<thermal::MockSensor>(read)});
+        }
+        heating.chip = std::make_unique<gpio::MockChip>(2, clock, gpio::recorder(heat_writes));
+        heating.stage =
+            std::make_unique<thermal::PowerStage>(std::move(outputs), heating.chip.get());
+        heating.control =
+            std::make_unique<thermal::HeatControl>(std::move(ports), false, *heating.stage);
     }
-    heating.chip = std::move(heat_chip);
-    heating.stage = std::make_unique<thermal::PowerStage>(std::move(outputs), heating.chip.get());
-    heating.control =
-        std::make_unique<thermal::HeatControl>(std::move(ports), false, *heating.stage);
-    const Result<PrintReport> report = print({file, printer, false, {}}, chip, clock, &heating);
-    const auto took = std::chrono::steady_clock::now() - from;
+    // It heated, and at the end nothing is on; it waited for heat, and no axis moved.
+    void check_ended() const {
+        CHECK(chip.released());
+        CHECK(chip.levels() == 0);
+        bool was_on = false, stepped = false;
+        for (const gpio::LineWrite& write : heat_writes) was_on = was_on || write.levels != 0;
+        for (const gpio::LineWrite& write : writes)
+            stepped = stepped || (write.levels & all_step_bits) != 0;
+        CHECK(was_on);
+        CHECK_FALSE(stepped);
+        REQUIRE_FALSE(heat_writes.empty());
+        CHECK(heat_writes.back().levels == 0);
+    }
+};
+
+}  // namespace
+
+TEST_CASE("print 2: a guard that fires in a real print takes heat and motion away") {
+    Board board;
+    const std::string file = write_print("heat_real", {draw_square}, {}, heated(210, 60));
+    int calls = 0;
+    const ProgressSink breaks = [&](const Progress&) { board.bed_is_broken = ++calls > 3; };
+    const Result<PrintReport> report =
+        print({file, board.printer, false, breaks}, board.chip, board.clock, &board.heating);
     REQUIRE_FALSE(report.ok());
     CHECK(report.error().status == ExitStatus::machine);
     CHECK_MESSAGE(report.error().message.find("heater bed") != std::string::npos,
                   report.error().message);
-    CHECK(took < std::chrono::seconds(10));
-    CHECK(chip.released());
-    CHECK(chip.levels() == 0);
-    CHECK(heaters.levels() == 0);
-    bool was_on = false;
-    for (const gpio::LineWrite& write : heat_writes) was_on = was_on || write.levels != 0;
-    CHECK(was_on);
-    // It waited for heat, and no axis moved.
-    for (const gpio::LineWrite& write : writes) CHECK((write.levels & all_step_bits) == 0);
+    board.check_ended();
+}
+
+TEST_CASE("print 3, 4: SIGTERM while a print waits for heat ends both") {
+    Board board;
+    const std::string file = write_print("heat_stopped", {draw_square}, {}, heated(210, 60));
+    int calls = 0;
+    const ProgressSink stops = [&](const Progress&) {
+        if (++calls == 3) std::raise(SIGTERM);
+    };
+    const Result<PrintReport> report =
+        print({file, board.printer, false, stops}, board.chip, board.clock, &board.heating);
+    REQUIRE_FALSE(report.ok());
+    CHECK(report.error().status == ExitStatus::stopped);
+    board.check_ended();
+}
+
+TEST_CASE("print 2: a file that heats is not printed cold by mistake") {
+    Board board;
+    const std::string file = write_print("heat_mistake", {draw_square}, {}, heated(210, 60));
+    const Result<PrintReport> report =
+        print({file, board.printer, false, {}}, board.chip, board.clock);
+    REQUIRE_FALSE(report.ok());
+    CHECK(board.writes.empty());
 }
 
 TEST_CASE("heating 1: what is missing to heat is told by its key or file") {

@@ -115,6 +115,19 @@ TEST_CASE("control: no false alarm with sensors of every kind") {
     }
 }
 
+TEST_CASE("control 2: fans go on after a guard has fired, at the speed that they had") {
+    SimulatedHeat heat(heated_printer(), faults_of("300 open bed"));
+    set_targets(heat, {});
+    heat.control().set_fan(0.5);
+    heat.advance_to(310);
+    REQUIRE(heat.control().trip());
+    int on = 0, ticks = 0;
+    heat.observe([&](double) { ++ticks, on += heat.is_fan_on(); });
+    heat.advance_to(410);
+    CHECK_FALSE(heat.any_heater_on());
+    CHECK(std::abs(on - ticks / 2) <= 5);
+}
+
 TEST_CASE("control 4: reached() waits for a target from above, too") {
     SimulatedHeat heat(heated_printer(), {});
     set_targets(heat, {});
