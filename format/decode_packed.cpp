@@ -106,8 +106,9 @@ bool ChunkDecoder::give_repeated(std::int64_t x, std::int64_t y, std::int64_t sa
 
 bool ChunkDecoder::give_packed(const Point& to, std::int64_t sagitta, Operation& out) {
     const Point from = at_;
-    if (!in_range(to)) return false;
-    if (from == to) return fail("a motion of a packed run has no length");
+    if (beyond(to.x, coordinate_limit) || beyond(to.y, coordinate_limit))
+        return fail("a position is out of range");
+    if (sagitta == 0 && from == to) return fail("a motion of a packed run has no length");
     if (!is_arc(from, to, sagitta)) return fail("an arc has no or too large a sagitta");
     history_->add(plane_motion(from, to, sagitta));
     at_ = to;

@@ -57,7 +57,7 @@ inline std::int64_t nearest(double value) {
     constexpr double limit = 1099511627776.0;
     // Doubles of this size are whole numbers, one unit apart.
     constexpr double whole = 6755399441055744.0;  // 1.5 x 2^52
-    if (!(value > -limit && value < limit)) return 0;
+    if (!(std::abs(value) < limit)) return 0;
     return static_cast<std::int64_t>(std::bit_cast<std::uint64_t>(value + whole) -
                                      std::bit_cast<std::uint64_t>(whole));
 }
