@@ -3,7 +3,8 @@
 //
 // Contract
 //  1. The rules are part of the file format (docs/lyr-format.md, "Packed runs"): reader and writer must agree on every
-//     bit. Only + - * / of IEEE doubles are used, in the order that is written there, without fused multiply-add.
+//     bit. Only + - * / and the square root of IEEE doubles are used, in the order that is written there, without fused
+//     multiply-add.
 //  2. Memory is fixed.
 //  3. Any motions give finite predictions: what is no number or too far away is predicted as 0.
 

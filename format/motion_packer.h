@@ -1,5 +1,5 @@
-// Lines and arcs that follow each other, as the operations that take the fewest bytes: runs beside earlier motions, smooth
-// runs, or plain ones.
+// Lines and arcs that follow each other, as the operations that take the fewest bytes: runs beside earlier motions or like
+// them, smooth runs, or plain ones.
 //
 // Contract
 //  1. A reader finds the same motions, whatever they are.
