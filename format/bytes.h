@@ -118,11 +118,13 @@ private:
         std::uint64_t number(unsigned order) {
             constexpr std::uint64_t end = std::uint64_t{1} << (fewest_peeked - 1);
             const auto zeros = static_cast<unsigned>(std::countr_zero(bits | end));
-            const unsigned width = zeros + order, length = zeros + 1 + width;
-            taken += length;
-            const std::uint64_t low = bits >> (zeros + 1), top = std::uint64_t{1} << (width & 63);
-            bits >>= length & 63;
-            return (low & (top - 1)) + top - (std::uint64_t{1} << order);
+            const unsigned width = zeros + order;
+            taken += zeros + 1 + width;
+            const std::uint64_t top = std::uint64_t{1} << (width & 63);
+            bits >>= zeros + 1;
+            const std::uint64_t low = bits & (top - 1);
+            bits >>= width & 63;
+            return low + top - (std::uint64_t{1} << order);
         }
     };
 

@@ -105,6 +105,8 @@ bool ChunkDecoder::decode_motion(std::uint8_t code, Operation& out) {
             return decode_smooth(out);
         case opcode::parallel:
             return decode_parallel(out);
+        case opcode::repeated:
+            return decode_repeated(out);
         case opcode::wipe:
             return decode_wipe(out);
         default:

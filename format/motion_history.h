@@ -3,7 +3,8 @@
 //
 // Contract
 //  1. The rules are part of the file format (docs/lyr-format.md, "Packed runs"): reader and writer must agree on every
-//     bit. Only + - * / of IEEE doubles are used, in the order that is written there, without fused multiply-add.
+//     bit. Only + - * / and the square root of IEEE doubles are used, in the order that is written there, without fused
+//     multiply-add.
 //  2. Memory is fixed.
 //  3. Any motions give finite predictions: what is no number or too far away is predicted as 0.
 
@@ -57,7 +58,7 @@ inline std::int64_t nearest(double value) {
     constexpr double limit = 1099511627776.0;
     // Doubles of this size are whole numbers, one unit apart.
     constexpr double whole = 6755399441055744.0;  // 1.5 x 2^52
-    if (!(value > -limit && value < limit)) return 0;
+    if (!(std::abs(value) < limit)) return 0;
     return static_cast<std::int64_t>(std::bit_cast<std::uint64_t>(value + whole) -
                                      std::bit_cast<std::uint64_t>(whole));
 }
