@@ -32,6 +32,7 @@ constexpr Program program{
     "  lyrview part.lyr --layer 36 --no-travel -o layer.svg  only what is extruded\n"
     "  lyrview part.lyr --verify                             is it whole? What is damaged, where?\n"
     "  lyrview broken.lyr --repair -o whole.lyr              the layers in front of the damage\n"
+    "  lyrview part.lyr --thumbnail -o part.png              the print's own small picture\n"
     "  lyrview --diff old.lyr new.lyr                        how the second differs from the "
     "first\n"
     "  stepc part.step -o - | lyrview - --info               from a pipe\n"
