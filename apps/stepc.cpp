@@ -190,7 +190,8 @@ Result<slicer::Summary> slice(const Arguments& arguments, ProgressLine& line,
         heights = std::move(*read);
     }
     line.show("reading");
-    auto model = slicer::load(arguments.step_path, arguments.options, diagnostics);
+    slicer::Options options = arguments.options;
+    auto model = slicer::load(arguments.step_path, options, diagnostics, &options.source_sha256);
     if (!model) return model.error();
     if (arguments.sections()) {
         return slicer::section_at(*model, heights, arguments.report_path, arguments.options,
@@ -200,7 +201,7 @@ Result<slicer::Summary> slice(const Arguments& arguments, ProgressLine& line,
                                  ? standard_input_name
                                  : std::filesystem::path(arguments.step_path).filename().string();
     return slicer::print(std::move(*model), name, arguments.lyr_path, arguments.report_path,
-                         arguments.options, progress, diagnostics);
+                         options, progress, diagnostics);
 }
 
 // What the options say together, and the name of the print where they do not say it.
