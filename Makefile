@@ -13,6 +13,7 @@ BUILD  ?= build
 PREFIX ?= /usr/local
 JOBS   ?= $(shell nproc)
 LYR_BENCH_FILES ?= fixtures/parts
+LYR_BENCH_SET   = --set perimeters.count=3 --set infill.density=15% --set infill.pattern=grid
 CTEST   = ctest --output-on-failure -j $(JOBS)
 
 .PHONY: all setup demo test test-bits sanitize board bench install clean
@@ -53,8 +54,11 @@ board: setup
 
 bench: setup
 	cmake -S . -B build-bench -DCMAKE_BUILD_TYPE=Release -DLYR_BENCH=ON -DLYR_TESTS=OFF
-	cmake --build build-bench -j $(JOBS) --target bench_micro bench_compare
+	cmake --build build-bench -j $(JOBS) --target bench_micro bench_compare bench_lyr stepc
 	build-bench/bench_micro
+	build-bench/stepc fixtures/parts/gearbox_base.step -o build-bench/gearbox_base.lyr --layer-height 0.2 $(LYR_BENCH_SET)
+	build-bench/stepc fixtures/parts/lower_teeth.step -o build-bench/lower_teeth.lyr --layer-height 0.1 $(LYR_BENCH_SET)
+	build-bench/bench_lyr build-bench/gearbox_base.lyr build-bench/lower_teeth.lyr
 	build-bench/bench_compare --files "$(LYR_BENCH_FILES)"
 
 install: all

@@ -29,17 +29,15 @@ void ChunkDecoder::begin_chunk(std::span<const std::byte> bytes, std::uint64_t o
 
 bool ChunkDecoder::fail(const char* error) {
     if (!error_) error_ = cursor_.bad() ? "a number is cut short or too long" : error;
+    packed_left_ = 0;
     return false;
 }
 
-ChunkDecoder::Step ChunkDecoder::next(Operation& out) {
-    begin_offset_ = cursor_.offset();
+ChunkDecoder::Step ChunkDecoder::find_next(Operation& out) {
     while (!error_) {
         bool given = false;
         if (run_left_ > 0) {
             given = decode_run(out);
-        } else if (packed_left_ > 0) {
-            given = decode_packed(out);
         } else if (stage_ != HatchStage::none) {
             given = decode_hatch_step(out);
         } else if (wipe_left_ > 0) {
@@ -107,6 +105,8 @@ bool ChunkDecoder::decode_motion(std::uint8_t code, Operation& out) {
             return decode_smooth(out);
         case opcode::parallel:
             return decode_parallel(out);
+        case opcode::repeated:
+            return decode_repeated(out);
         case opcode::wipe:
             return decode_wipe(out);
         default:

@@ -31,7 +31,12 @@ public:
     // `operations` is how many the chunk says it has.
     void begin_chunk(std::span<const std::byte> bytes, std::uint64_t operations);
 
-    Step next(Operation& out);
+    Step next(Operation& out) {
+        begin_offset_ = cursor_.offset();
+        // Most are within packed runs.
+        if (packed_left_ > 0 && decode_packed(out)) return Step::operation;
+        return find_next(out);
+    }
 
     const PathStyle& style() const { return style_; }
     // What is wrong, after Step::error.
@@ -41,8 +46,10 @@ public:
     std::size_t end_offset() const { return cursor_.offset(); }
 
 private:
+    enum class Packed { smooth, parallel, repeated };
     enum class HatchStage { none, row, start, end };
 
+    Step find_next(Operation& out);
     bool fail(const char* error);
     // These return false if they gave nothing out: passed over, or an error.
     bool decode(std::uint8_t code, Operation& out);
@@ -60,10 +67,13 @@ private:
     bool decode_hatch_step(Operation& out);
     bool decode_smooth(Operation& out);
     bool decode_parallel(Operation& out);
+    bool decode_repeated(Operation& out);
+    bool reach_back(std::int64_t least);
     bool begin_packed(Operation& out);
     bool decode_packed(Operation& out);
     bool give_smooth(std::int64_t x, std::int64_t y, std::int64_t sagitta, Operation& out);
     bool give_beside(std::int64_t x, std::int64_t y, std::int64_t sagitta, Operation& out);
+    bool give_repeated(std::int64_t x, std::int64_t y, std::int64_t sagitta, Operation& out);
     bool give_packed(const Point& to, std::int64_t sagitta, Operation& out);
     bool decode_wipe(Operation& out);
     bool decode_wipe_piece(Operation& out);
@@ -78,10 +88,9 @@ private:
         return value < -limit || value > limit;
     }
     bool in_range(const Point& point) {
-        if (!beyond(point.x, coordinate_limit) && !beyond(point.y, coordinate_limit) &&
-            !beyond(point.z, coordinate_limit))
-            return true;
-        return fail("a position is out of range");
+        return (!beyond(point.x, coordinate_limit) && !beyond(point.y, coordinate_limit) &&
+                !beyond(point.z, coordinate_limit)) ||
+               fail("a position is out of range");
     }
     // A path has begun.
     bool may_extrude();
@@ -107,10 +116,10 @@ private:
     Vector last_chord_;
     double last_length_ = 0;
     std::int64_t last_sagitta_ = 0;
-    bool beside_ = false;            // is the packed run a parallel one
-    std::uint64_t beside_what_ = 0;  // the number of the motion that the next one is parallel to
-    Course beside_course_;           // its course
-    std::int64_t back_ = 0, distance_ = 0;  // of the last parallel run
+    Packed packed_ = Packed::smooth;
+    std::uint64_t old_ = 0;  // the number of the motion that the next one is parallel to or repeats
+    Course old_course_;
+    std::int64_t back_ = 0, distance_ = 0;  // of the last run that had them
 
     Grid grid_;
     bool has_grid_ = false;

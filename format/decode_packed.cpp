@@ -7,7 +7,8 @@
 namespace lyr::format {
 
 bool ChunkDecoder::decode_smooth(Operation& out) {
-    beside_ = smooth_ = false;
+    packed_ = Packed::smooth;
+    smooth_ = false;
     if (history_->count() > 0) {
         const PlaneMotion& last = (*history_)[history_->count() - 1];
         smooth_ = last.to_x == at_.x && last.to_y == at_.y;
@@ -18,21 +19,33 @@ bool ChunkDecoder::decode_smooth(Operation& out) {
     return begin_packed(out);
 }
 
-bool ChunkDecoder::decode_parallel(Operation& out) {
-    const std::int64_t back = cursor_.signed_varint(), distance = cursor_.signed_varint();
+// Differences out of range are refused before they are added, so that no sum overflows.
+bool ChunkDecoder::reach_back(std::int64_t least) {
     constexpr auto window = static_cast<std::int64_t>(MotionHistory::window);
-    // Sums of what is in range, so that they cannot overflow.
-    if (beyond(back, window) || beyond(distance, 2 * farthest_beside))
-        return fail("a run is parallel to what is out of reach");
+    const std::int64_t back = cursor_.signed_varint();
+    if (beyond(back, window)) return fail("a run leans on motions out of reach");
     back_ += back;
+    if (back_ < least || back_ > static_cast<std::int64_t>(history_->kept()))
+        return fail("a run leans on motions out of reach");
+    old_ = history_->count() - static_cast<std::uint64_t>(back_);
+    return true;
+}
+
+bool ChunkDecoder::decode_parallel(Operation& out) {
+    // The motion behind the old one must be known as well.
+    if (!reach_back(2)) return false;
+    const std::int64_t distance = cursor_.signed_varint();
+    if (beyond(distance, 2 * farthest_beside) || beyond(distance_ + distance, farthest_beside))
+        return fail("a run is too far from what it is parallel to");
     distance_ += distance;
-    if (back_ < 2 || back_ > static_cast<std::int64_t>(history_->kept()) ||
-        distance_ < -farthest_beside || distance_ > farthest_beside)
-        return fail("a run is parallel to what is out of reach");
-    beside_ = true;
-    beside_what_ = history_->count() - static_cast<std::uint64_t>(back_);
-    beside_course_ = course_of((*history_)[beside_what_]);
+    packed_ = Packed::parallel;
+    old_course_ = course_of((*history_)[old_]);
     return begin_packed(out);
+}
+
+bool ChunkDecoder::decode_repeated(Operation& out) {
+    packed_ = Packed::repeated;
+    return reach_back(1) && begin_packed(out);
 }
 
 bool ChunkDecoder::begin_packed(Operation& out) {
@@ -51,8 +64,10 @@ bool ChunkDecoder::begin_packed(Operation& out) {
 bool ChunkDecoder::decode_packed(Operation& out) {
     const auto [x, y, sagitta] = cursor_.bit_numbers(position_order_, sagitta_order_);
     if (--packed_left_ == 0) cursor_.end_bits();
-    if (cursor_.bad()) return false;
-    return beside_ ? give_beside(x, y, sagitta, out) : give_smooth(x, y, sagitta, out);
+    if (cursor_.bad()) return fail("");
+    if (packed_ == Packed::parallel) return give_beside(x, y, sagitta, out);
+    return packed_ == Packed::smooth ? give_smooth(x, y, sagitta, out)
+                                     : give_repeated(x, y, sagitta, out);
 }
 
 bool ChunkDecoder::give_smooth(std::int64_t x, std::int64_t y, std::int64_t sagitta,
@@ -69,16 +84,24 @@ bool ChunkDecoder::give_smooth(std::int64_t x, std::int64_t y, std::int64_t sagi
 
 bool ChunkDecoder::give_beside(std::int64_t x, std::int64_t y, std::int64_t sagitta,
                                Operation& out) {
-    const PlaneMotion& old = (*history_)[beside_what_];
-    const PlaneMotion& next = (*history_)[++beside_what_];
-    const Course course = beside_course_;
-    beside_course_ = course_of(next);
+    const PlaneMotion& old = (*history_)[old_];
+    const PlaneMotion& next = (*history_)[++old_];
+    const Course course = old_course_;
+    old_course_ = course_of(next);
     const bool joined = next.from_x == old.to_x && next.from_y == old.to_y;
     const double distance = static_cast<double>(distance_) / scale::distance;
-    const Place end = end_beside(old, course, joined ? beside_course_.start : course.end,
-                                 joined ? beside_course_.size : course.size, distance);
+    const Place end = end_beside(old, course, joined ? old_course_.start : course.end,
+                                 joined ? old_course_.size : course.size, distance);
     return give_packed({end.x + x, end.y + y, at_.z},
                        sagitta + sagitta_beside(old, course, distance), out);
+}
+
+bool ChunkDecoder::give_repeated(std::int64_t x, std::int64_t y, std::int64_t sagitta,
+                                 Operation& out) {
+    const PlaneMotion old = (*history_)[old_++];
+    const std::int64_t old_x = std::int64_t{old.to_x} - old.from_x;
+    const std::int64_t old_y = std::int64_t{old.to_y} - old.from_y;
+    return give_packed({at_.x + old_x + x, at_.y + old_y + y, at_.z}, old.sagitta + sagitta, out);
 }
 
 bool ChunkDecoder::give_packed(const Point& to, std::int64_t sagitta, Operation& out) {

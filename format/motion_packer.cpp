@@ -38,14 +38,28 @@ struct Order {
     std::size_t bits = 0;
 };
 
-// The order in which the numbers take the fewest bits.
+// The order in which the numbers take the fewest bits, or nearly: the one from which neither neighbour is better. That
+// of the mean is not far from it.
 template <class Numbers>
 Order best_order(const Numbers& numbers) {
-    Order best;
-    for (unsigned order = 0; order <= highest_order; ++order) {
+    const auto with = [&](unsigned order) {
         std::size_t bits = 0;
         numbers([&](std::int64_t value) { bits += bit_count(zigzag(value), order); });
-        if (order == 0 || bits < best.bits) best = {order, bits};
+        return Order{order, bits};
+    };
+    double sum = 0, count = 0;
+    numbers([&](std::int64_t value) { sum += static_cast<double>(zigzag(value)), ++count; });
+    const auto mean = static_cast<std::uint64_t>(sum / count);
+    Order best = with(std::min(static_cast<unsigned>(std::bit_width(mean / 2)), highest_order));
+    const unsigned middle = best.order;
+    for (unsigned order = middle; order > 0; --order) {
+        const Order next = with(order - 1);
+        if (next.bits >= best.bits) break;
+        best = next;
+    }
+    for (unsigned order = middle + 1; best.order + 1 == order && order <= highest_order; ++order) {
+        const Order next = with(order);
+        if (next.bits < best.bits) best = next;
     }
     return best;
 }
@@ -62,10 +76,10 @@ std::size_t MotionPacker::put_operation(std::span<const PlaneMotion> motions) {
         finder_.add(motions[count]);
     }
     if (count == 0) {
-        Beside beside = *std::exchange(found_, std::nullopt);
-        beside.count = std::min(beside.count, most_motions);
-        put_beside(motions.first(beside.count), beside);
-        return beside.count;
+        Alike alike = *std::exchange(found_, std::nullopt);
+        alike.count = std::min(alike.count, most_motions);
+        put_alike(motions.first(alike.count), alike);
+        return alike.count;
     }
     put_apart(motions.first(count));
     return count;
@@ -84,26 +98,40 @@ MotionPacker::Off MotionPacker::off_smooth(const PlaneMotion& motion) const {
     return {x, y, motion.sagitta - sagitta};
 }
 
-void MotionPacker::put_beside(std::span<const PlaneMotion> motions, const Beside& beside) {
-    const auto back = static_cast<std::int64_t>(finder_.history().count() - beside.what);
-    put_byte(operation_, opcode::parallel);
+void MotionPacker::put_alike(std::span<const PlaneMotion> motions, const Alike& alike) {
+    const auto back = static_cast<std::int64_t>(finder_.history().count() - alike.what);
+    put_byte(operation_, alike.repeated ? opcode::repeated : opcode::parallel);
     put_signed(operation_, back - back_);
-    put_signed(operation_, beside.distance - distance_);
     back_ = back;
-    distance_ = beside.distance;
-    std::uint64_t what = beside.what;
+    if (!alike.repeated) {
+        put_signed(operation_, alike.distance - distance_);
+        distance_ = alike.distance;
+    }
+    std::uint64_t what = alike.what;
     for (const PlaneMotion& motion : motions) {
-        const Place end = finder_.end_beside(what, beside.distance);
-        const std::int64_t sagitta = finder_.sagitta_beside(what, beside.distance);
-        offs_.push_back({motion.to_x - end.x, motion.to_y - end.y, motion.sagitta - sagitta});
+        offs_.push_back(alike.repeated ? off_repeated(motion, what)
+                                       : off_beside(motion, what, alike.distance));
         finder_.add(motion);
         ++what;
     }
-    const Packing packing = best_packing();
-    put_packed(packing);
+    put_packed(best_packing());
 }
 
-// Beside nothing.
+MotionPacker::Off MotionPacker::off_repeated(const PlaneMotion& motion, std::uint64_t what) const {
+    const PlaneMotion& old = finder_.history()[what];
+    return {std::int64_t{motion.to_x} - motion.from_x - (std::int64_t{old.to_x} - old.from_x),
+            std::int64_t{motion.to_y} - motion.from_y - (std::int64_t{old.to_y} - old.from_y),
+            motion.sagitta - old.sagitta};
+}
+
+MotionPacker::Off MotionPacker::off_beside(const PlaneMotion& motion, std::uint64_t what,
+                                           std::int64_t distance) const {
+    const Place end = finder_.end_beside(what, distance);
+    return {motion.to_x - end.x, motion.to_y - end.y,
+            motion.sagitta - finder_.sagitta_beside(what, distance)};
+}
+
+// Like nothing before.
 void MotionPacker::put_apart(std::span<const PlaneMotion> motions) {
     const Packing packing = best_packing();
     const std::size_t head = 3 + (motions.size() > 127 ? 1 : 0);

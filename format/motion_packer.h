@@ -50,7 +50,9 @@ private:
 
     std::size_t put_operation(std::span<const PlaneMotion> motions);
     Off off_smooth(const PlaneMotion& motion) const;
-    void put_beside(std::span<const PlaneMotion> motions, const Beside& beside);
+    Off off_repeated(const PlaneMotion& motion, std::uint64_t what) const;
+    Off off_beside(const PlaneMotion& motion, std::uint64_t what, std::int64_t distance) const;
+    void put_alike(std::span<const PlaneMotion> motions, const Alike& alike);
     void put_apart(std::span<const PlaneMotion> motions);
     void put_plain(std::span<const PlaneMotion> motions);
     Packing best_packing() const;
@@ -60,8 +62,8 @@ private:
     std::vector<PlaneMotion> waiting_;
     Bytes operation_;
     std::vector<Off> offs_;
-    std::optional<Beside> found_;           // for the first motion that waits
-    std::int64_t back_ = 0, distance_ = 0;  // of the last run beside others
+    std::optional<Alike> found_;            // for the first motion that waits
+    std::int64_t back_ = 0, distance_ = 0;  // of the last run that had them
 };
 
 }  // namespace lyr::format

@@ -10,12 +10,13 @@ namespace {
 
 // Beyond this the difference is no smaller than what a motion costs by itself.
 constexpr std::int64_t most_off_quanta = 48;
+constexpr std::int64_t most_repeated_off = 8;
 // Shorter runs cost more than they save.
 constexpr std::size_t fewest_motions = 3;
 // Walls are less than 16 mm apart, at a quantum of 1 um, and not upon each other.
 constexpr double nearest_quanta = 2, farthest_quanta = 16384;
 // Motions of one direction that are looked at, and of these the ones that are followed.
-constexpr int most_looks = 24, most_candidates = 3;
+constexpr int most_looks = 24, most_candidates = 6;
 // As many ends make the distance certain to a small part of a quantum.
 constexpr std::size_t enough_ends = 16;
 
@@ -83,7 +84,7 @@ std::optional<double> ParallelFinder::distance(const PlaneMotion& motion,
 }
 
 std::size_t ParallelFinder::extent(std::span<const PlaneMotion> motions,
-                                   const Beside& beside) const {
+                                   const Alike& beside) const {
     const std::uint64_t known = history_.count() - 1 - beside.what;
     const std::size_t most = std::min<std::size_t>(motions.size(), static_cast<std::size_t>(known));
     for (std::size_t i = 0; i < most; ++i) {
@@ -98,7 +99,7 @@ std::size_t ParallelFinder::extent(std::span<const PlaneMotion> motions,
 }
 
 std::int64_t ParallelFinder::mean_distance(std::span<const PlaneMotion> motions,
-                                           const Beside& beside) const {
+                                           const Alike& beside) const {
     const std::size_t ends = std::min(beside.count, enough_ends);
     double sum = 0;
     std::size_t counted = 0;
@@ -108,29 +109,48 @@ std::int64_t ParallelFinder::mean_distance(std::span<const PlaneMotion> motions,
     return std::llround(sum / static_cast<double>(counted) * scale::distance);
 }
 
-std::optional<Beside> ParallelFinder::find(std::span<const PlaneMotion> motions) const {
+std::size_t ParallelFinder::repeated(std::span<const PlaneMotion> motions,
+                                     std::uint64_t what) const {
+    const auto back = static_cast<std::size_t>(history_.count() - what);
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+        const PlaneMotion& motion = motions[i];
+        const PlaneMotion& old = i < back ? history_[what + i] : motions[i - back];
+        const auto off = [](std::int64_t from, std::int64_t to, std::int64_t old_from,
+                            std::int64_t old_to) { return to - from - (old_to - old_from); };
+        if (std::abs(off(motion.from_x, motion.to_x, old.from_x, old.to_x)) > most_repeated_off ||
+            std::abs(off(motion.from_y, motion.to_y, old.from_y, old.to_y)) > most_repeated_off ||
+            std::abs(motion.sagitta - old.sagitta) > most_repeated_off)
+            return i;
+    }
+    return motions.size();
+}
+
+std::optional<Alike> ParallelFinder::find(std::span<const PlaneMotion> motions) const {
     const std::uint64_t count = history_.count(), first = count - history_.kept();
-    if (count < 2 || motions.size() < fewest_motions) return std::nullopt;
+    if (count == 0 || motions.size() < fewest_motions) return std::nullopt;
     const Vector end = course_of(motions[0]).end;
     const std::size_t here = sector(end, 0);
     const std::size_t beyond = sector(end, 0.5) == here ? here + sectors - 1 : here + 1;
-    Beside best;
+    Alike best;
     int looks = 0, candidates = 0;
     for (const std::size_t in : {here, beyond % sectors}) {
         for (std::uint64_t what = newest_[in];
              what != none && what >= first && looks < most_looks && candidates < most_candidates;
              what = at(older_, what)) {
             ++looks;
-            if (what + 1 >= count) continue;
-            const auto apart = distance(motions[0], what);
+            Alike alike{what, 0, repeated(motions, what), true};
+            if (alike.count > 0) ++candidates;
+            if (alike.count > best.count) best = alike;
+            const auto apart = what + 1 < count ? distance(motions[0], what) : std::nullopt;
             if (!apart) continue;
             ++candidates;
-            Beside beside{what, std::llround(*apart * scale::distance), 0};
-            beside.count = extent(motions, beside);
-            if (beside.count > best.count) best = beside;
+            alike = {what, std::llround(*apart * scale::distance), 0, false};
+            alike.count = extent(motions, alike);
+            if (alike.count > best.count) best = alike;
         }
     }
     if (best.count < fewest_motions) return std::nullopt;
+    if (best.repeated) return best;
     best.distance = mean_distance(motions, best);
     best.count = extent(motions, best);
     if (best.count < fewest_motions) return std::nullopt;

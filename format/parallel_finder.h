@@ -1,5 +1,5 @@
-// Finds what the next motions of a layer run beside: an inner wall along the wall around it, say. It looks at those motions
-// of the history whose ends have nearly the same direction, kept by that direction.
+// Finds what the next motions of a layer run beside (an inner wall along the wall around it, say) or repeat (the turns of
+// a fill). It looks at those motions of the history whose ends have nearly the same direction, kept by that direction.
 //
 // Contract
 //  1. What is found depends on the motions only.
@@ -17,11 +17,12 @@
 
 namespace lyr::format {
 
-// The first `count` of the motions that were asked for run beside those from `what` on.
-struct Beside {
+// The first `count` of the motions that were asked for run beside those from `what` on, or repeat them elsewhere.
+struct Alike {
     std::uint64_t what = 0;
     std::int64_t distance = 0;  // in 1/16 quanta
     std::size_t count = 0;
+    bool repeated = false;
 };
 
 class ParallelFinder {
@@ -34,7 +35,7 @@ public:
     void add(const PlaneMotion& motion);
 
     // None: not as many as would pay. `motions` follow the history.
-    std::optional<Beside> find(std::span<const PlaneMotion> motions) const;
+    std::optional<Alike> find(std::span<const PlaneMotion> motions) const;
 
     // Where the end of the motion beside this one is expected, and its sagitta.
     Place end_beside(std::uint64_t number, std::int64_t distance) const;
@@ -56,8 +57,9 @@ private:
     static std::size_t sector(const Vector& direction, double turned);
     const Course* next(std::uint64_t number) const;
     std::optional<double> distance(const PlaneMotion& motion, std::uint64_t number) const;
-    std::size_t extent(std::span<const PlaneMotion> motions, const Beside& beside) const;
-    std::int64_t mean_distance(std::span<const PlaneMotion> motions, const Beside& beside) const;
+    std::size_t extent(std::span<const PlaneMotion> motions, const Alike& beside) const;
+    std::size_t repeated(std::span<const PlaneMotion> motions, std::uint64_t what) const;
+    std::int64_t mean_distance(std::span<const PlaneMotion> motions, const Alike& beside) const;
 
     MotionHistory history_;
     std::vector<Course> courses_ = std::vector<Course>(MotionHistory::window);

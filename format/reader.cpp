@@ -84,18 +84,18 @@ bool Reader::Implementation::pass_over(const BlockHead& head) {
                 head.offset, ExitStatus::unsupported);
 }
 
-bool Reader::Implementation::next(Operation& operation) {
+bool Reader::Implementation::find_next() {
     while (!error_ && where_ != Where::at_end) {
         if (layer_begins_) {
             layer_begins_ = false;
-            operation = LayerStart{record_.layer.index, record_.start};
+            operation_ = LayerStart{record_.layer.index, record_.start};
             return true;
         }
         if (where_ != Where::in_chunk) {
             read_block();
             continue;
         }
-        switch (decoder_.next(operation)) {
+        switch (decoder_.next(operation_)) {
             case ChunkDecoder::Step::operation:
                 return true;
             case ChunkDecoder::Step::end:

@@ -30,7 +30,11 @@ public:
 
     bool open();
     // Null: the end, or an error.
-    const Operation* read() { return next(operation_) ? &operation_ : nullptr; }
+    const Operation* read() {
+        const bool given =
+            where_ == Where::in_chunk && decoder_.next(operation_) == ChunkDecoder::Step::operation;
+        return given || find_next() ? &operation_ : nullptr;
+    }
     bool seek_layer(std::uint32_t index);
 
     const std::optional<Diagnostic>& error() const { return error_; }
@@ -42,7 +46,7 @@ public:
 private:
     enum class Where { before_layers, in_layer, in_chunk, behind_layers, at_end };
 
-    bool next(Operation& operation);
+    bool find_next();
     bool fail(const std::string& what, std::uint64_t offset, ExitStatus status = ExitStatus::input);
     bool fail_block(const BlockHead& head);
     bool fail_fault(std::uint64_t offset);

@@ -81,9 +81,8 @@ bool Reader::Implementation::read_on_to_layer(std::uint32_t index) {
                         " has begun already, and a pipe does not go back",
                     blocks_.offset());
     }
-    Operation passed;
-    while (next(passed)) {
-        const auto* start = std::get_if<LayerStart>(&passed);
+    while (const Operation* passed = read()) {
+        const auto* start = std::get_if<LayerStart>(passed);
         if (!start || start->index != index) continue;
         layer_begins_ = true;
         return true;

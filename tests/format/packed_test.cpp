@@ -182,6 +182,23 @@ TEST_CASE("packed: runs go on from chunk to chunk") {
     CHECK(layer->chunks.size() > 1);
 }
 
+TEST_CASE("packed: the turns of a fill repeat each other, all the way") {
+    // To and fro between two sides; the arcs between the lines are alike as well.
+    for (const double turned_rad : {0.0, 0.6, 2.5}) {
+        Wall fill;
+        const auto put = [&](double x, double y, double sagitta) {
+            const double c = std::cos(turned_rad), s = std::sin(turned_rad);
+            fill.push_back({x * c - y * s, x * s + y * c, sagitta});
+        };
+        put(0, 0, 0);
+        for (int i = 0; i < 1500; ++i) {
+            put(i % 2 ? 0 : 3.3, i * 2.1, 0);
+            put(i % 2 ? 0.1 : 3.2, i * 2.1 + 2.1, i % 2 ? -0.3 : 0.3);
+        }
+        CHECK(bytes_per_motion({fill}) < 0.9);
+    }
+}
+
 TEST_CASE("packed: any motions come back, however far apart and whatever they are beside") {
     std::mt19937 random(11);
     const auto uniform = [&](double low, double high) {
@@ -315,8 +332,11 @@ TEST_CASE("reader 5: packed runs that make no sense are errors with a place") {
     has(message(after_lines({0x49, 2, 16, 1, 0, 0x7f}), 5), "out of reach");
     has(message(after_lines({0x49, 8, 16, 1, 0, 0x7f}), 5), "out of reach");
     has(message(after_lines({0x49, 0x83, 0x10, 16, 1, 0, 0x7f}), 5), "out of reach");
-    has(message(after_lines({0x49, 6, 255, 255, 255, 255, 255, 255, 1, 1, 0, 0x7f}), 5),
-        "out of reach");
+    has(message(after_lines({0x49, 6, 255, 255, 255, 255, 255, 255, 1, 1, 0, 0x7f}), 5), "too far");
+    has(message(after_lines({0x4a, 0, 1, 0, 0x7f}), 5), "out of reach");
+    has(message(after_lines({0x4a, 8, 1, 0, 0x7f}), 5), "out of reach");
+    has(message(after_lines({0x4a, 1, 1, 0, 0x7f}), 5), "out of reach");
+    has(message(after_lines({0x4a, 2, 9, 0, 0x7f}), 13), "cut short");
     has(message(after_lines({0x48, 0, 0, 0x7f}), 5), "no motions");
     has(message(after_lines({0x48, 3, 0, 0x7f}), 7), "cut short");
     has(message(after_lines({0x48, 1, 0x00, 0x00}), 5), "cut short");
@@ -334,6 +354,21 @@ TEST_CASE("reader 5: packed runs that make no sense are errors with a place") {
     std::vector<int> twice{0x49, 6};
     twice.insert(twice.end(), far.begin(), far.end());
     has(message(after_lines(twice), 5), "cut short");
+}
+
+TEST_CASE("packed: a repeated run repeats itself, worked out by hand") {
+    FileBytes raw;
+    for (const int byte : {0x50, 1, 0, 0x01, 20, 0, 0, 20, 0x4a, 4, 4, 0})
+        raw.push_back(static_cast<std::byte>(byte));
+    BitWriter bits(raw);
+    for (const int value : {0, 0, 0, 0, 0, 1, 0, -1, 0, 0, 0, 1}) bits.put_signed(value, 0);
+    const test::Reading reading = test::read_bytes(test::raw_file(raw, 7));
+    REQUIRE_MESSAGE(!reading.error, to_string(*reading.error));
+    REQUIRE(reading.given.size() == 8);
+    CHECK(reading.given[4].operation == Operation(Line{{10, 10, 0}, {20, 10, 0}, false}));
+    CHECK(reading.given[5].operation == Operation(Arc{{20, 10, 0}, {20, 20, 0}, 1}));
+    CHECK(reading.given[6].operation == Operation(Line{{20, 20, 0}, {30, 19, 0}, false}));
+    CHECK(reading.given[7].operation == Operation(Arc{{30, 19, 0}, {30, 29, 0}, 2}));
 }
 
 TEST_CASE("packed: a parallel run reads what the document says, worked out by hand") {

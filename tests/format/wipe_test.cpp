@@ -163,11 +163,11 @@ TEST_CASE("reader 5: wipes that make no sense are errors with a place") {
     const auto has = [](const std::string& text, const char* part) {
         CHECK_MESSAGE(text.find(part) != std::string::npos, text);
     };
-    has(message({0x4a, 1, 9, 2, 2, 0}, 1), "a wipe is cut short");
-    has(message({0x4a, 1, 1, 2, 2}, 1), "a wipe is cut short");
-    has(message({0x4a, 1, 1, 2, 130, 130}, 1), "cut short");
-    has(message({0x4a, 1}, 1), "cut short");
-    has(message({0x4a, 1, 1, 2, 2, 100}, 1), "sagitta");
-    has(message({0x4a, 1, 1, 0, 0, 2}, 1), "sagitta");
-    has(message({0x4a, 1, 1, 255, 255, 255, 255, 31, 0, 0}, 1), "out of range");
+    has(message({0x4b, 1, 9, 2, 2, 0}, 1), "a wipe is cut short");
+    has(message({0x4b, 1, 1, 2, 2}, 1), "a wipe is cut short");
+    has(message({0x4b, 1, 1, 2, 130, 130}, 1), "cut short");
+    has(message({0x4b, 1}, 1), "cut short");
+    has(message({0x4b, 1, 1, 2, 2, 100}, 1), "sagitta");
+    has(message({0x4b, 1, 1, 0, 0, 2}, 1), "sagitta");
+    has(message({0x4b, 1, 1, 255, 255, 255, 255, 31, 0, 0}, 1), "out of range");
 }

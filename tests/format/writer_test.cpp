@@ -228,7 +228,7 @@ TEST_CASE("writer 6: a print that does not fit the memory set aside is the same"
     const EncodedLayer layer = [] {
         LayerEncoder encoder(quantum, test::RandomLayer::state(0.2));
         encoder.begin_path(style);
-        for (int i = 0; i < 300000; ++i) encoder.line_to(i % 2 ? 90 : -90, i % 3 ? 80 : -80.0);
+        for (int i = 0; i < 300000; ++i) encoder.travel_to(i % 2 ? 90 : -90, i % 3 ? 80 : -80.0);
         auto encoded = encoder.finish();
         REQUIRE(encoded.ok());
         return std::move(*encoded);
@@ -239,11 +239,11 @@ TEST_CASE("writer 6: a print that does not fit the memory set aside is the same"
     CHECK(std::filesystem::file_size(path) > std::size_t{40} << 20);
     auto reader = Reader::open(path);
     REQUIRE(reader.ok());
-    std::uint64_t lines = 0;
+    std::uint64_t travels = 0;
     while (const Operation* operation = reader->read())
-        lines += std::holds_alternative<Line>(*operation);
+        travels += std::holds_alternative<Travel>(*operation);
     CHECK(!reader->error());
-    CHECK(lines == 30 * 300000);
+    CHECK(travels == 30 * 300000);
     std::filesystem::remove(path);
 }
 
