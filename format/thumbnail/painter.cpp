@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "format/arc.h"
 #include "format/chunk_decoder.h"
@@ -14,13 +15,15 @@ namespace {
 // The model is turned by 30 degrees, and looked at from 35 degrees over the bed.
 constexpr double turn_cos = 0.866, turn_sin = 0.5, rise_sin = 0.574, rise_cos = 0.819;
 // Where the light comes from, in the picture: left, towards the viewer.
-constexpr double light_x = -0.55, light_y = -0.55;
+constexpr double light_x = -0.707, light_y = -0.707;
 // Shades of 255.
 constexpr double darkest_wall = 80, brightest_wall = 205, skin = 245, inside = 225;
 // The lowest layer is a little darker than the highest.
 constexpr double least_height_share = 0.82;
 // Of the picture's width and height that stays free.
 constexpr double margin = 0.04;
+// An empty print has a scale, too.
+constexpr double least_extent_mm = 1e-3;
 // An arc's chords turn by no more than this.
 constexpr double most_turn_rad = 0.35;
 
@@ -58,7 +61,7 @@ double wall_shade(double dx, double dy) {
     const double away = (dy * turn_cos - dx * turn_sin) / length;
     double normal_x = away, normal_y = -right;
     if (normal_y > 0) normal_x = -normal_x, normal_y = -normal_y;
-    const double lit = std::clamp((normal_x * light_x + normal_y * light_y) / 0.778, 0.0, 1.0);
+    const double lit = std::clamp(normal_x * light_x + normal_y * light_y, 0.0, 1.0);
     return darkest_wall + (brightest_wall - darkest_wall) * lit;
 }
 
@@ -137,8 +140,8 @@ ThumbnailPainter::View ThumbnailPainter::view_of(ImageSize size, const PicturedB
     const double width = size.width * double{Canvas::samples},
                  height = size.height * double{Canvas::samples};
     const double free = 1 - 2 * margin;
-    const double scale = std::min(free * width / std::max(high_x - low_x, 1e-3),
-                                  free * height / std::max(high_y - low_y, 1e-3));
+    const double scale = std::min(free * width / std::max(high_x - low_x, least_extent_mm),
+                                  free * height / std::max(high_y - low_y, least_extent_mm));
     return {Canvas(size), scale, (low_x + high_x) / 2 - width / scale / 2,
             (low_y + high_y) / 2 + height / scale / 2};
 }
