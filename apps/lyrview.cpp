@@ -50,6 +50,7 @@ constexpr Program program{
     "  lyrview --from-gcode part.gcode -o part.lyr           what another slicer made, for lyrrun\n"
     "  lyrview part.lyr --verify                             is it whole? What is damaged, where?\n"
     "  lyrview broken.lyr --repair -o whole.lyr              the layers in front of the damage\n"
+    "  lyrview part.lyr --thumbnail -o part.png              the print's own small picture\n"
     "  lyrview --diff old.lyr new.lyr                        how the second differs from the "
     "first\n"
     "  stepc part.step -o - | lyrview - --info               from a pipe\n"

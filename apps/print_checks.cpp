@@ -1,5 +1,6 @@
 #include "apps/print_checks.h"
 
+#include <algorithm>
 #include <span>
 
 #include "apps/files.h"
@@ -10,6 +11,7 @@
 #include "format/check/repair.h"
 #include "format/check/verify.h"
 #include "format/export/diff.h"
+#include "format/reader.h"
 
 namespace lyr::command_line {
 namespace {
@@ -66,6 +68,25 @@ Status diff_prints(const std::string& first, const std::string& second) {
                       {}};
 }
 
+// The largest one.
+Status write_thumbnail(const std::string& path, const std::string& output) {
+    const auto reader = format::Reader::open(path);
+    if (!reader) return reader.error();
+    const auto& all = reader->header().metadata.thumbnails;
+    const auto largest = std::max_element(all.begin(), all.end(), [](const auto& a, const auto& b) {
+        return std::uint64_t{a.width} * a.height < std::uint64_t{b.width} * b.height;
+    });
+    if (largest == all.end())
+        return Diagnostic{Severity::error,
+                          ExitStatus::input,
+                          "the print has no thumbnail",
+                          {.file = input_name(path)}};
+    auto file = ReplaceFile::open(output);
+    if (!file) return file.error();
+    file->write(largest->png);
+    return file->commit();
+}
+
 }  // namespace
 
 void add_checks(CLI::App& app, CheckRequest& request) {
@@ -73,6 +94,8 @@ void add_checks(CLI::App& app, CheckRequest& request) {
              "Check the file to its last byte and say what is damaged or missing");
     add_flag(app, "--repair", request.repair,
              "Write (-o FILE) the whole layers in front of the first damage as a print");
+    add_flag(app, "--thumbnail", request.thumbnail,
+             "Write (-o FILE.png) the print's own picture, the largest that it has");
     add_file(app, "--diff", request.diff_path,
              "How the print differs from this one: metadata, settings, layers, totals");
 }
@@ -80,18 +103,21 @@ void add_checks(CLI::App& app, CheckRequest& request) {
 Status check_print(const CLI::App& app, const Program& program, const CheckRequest& request,
                    const std::string& lyr_path, const std::string& output_path, bool others) {
     const bool diffs = !request.diff_path.empty(), writes = app.count("--output") > 0;
-    if (others || request.verify + request.repair + diffs > 1)
-        return usage("--verify, --repair and --diff stand alone");
-    if (request.repair != writes)
-        return usage(request.repair ? "--repair needs -o FILE: the print to write"
-                                    : "-o goes with --repair, not with --verify or --diff");
-    if (const Status apart = check_apart({{"the print", lyr_path}},
-                                         {{"the repaired print", writes ? output_path : ""}});
+    if (others || request.verify + request.repair + request.thumbnail + diffs > 1)
+        return usage("--verify, --repair, --thumbnail and --diff stand alone");
+    if (request.repair && !writes) return usage("--repair needs -o FILE: the print to write");
+    const bool may_write = request.repair || request.thumbnail;
+    if (writes && !may_write)
+        return usage("-o goes with --repair or --thumbnail, not with --verify or --diff");
+    const char* what = request.thumbnail ? "the picture" : "the repaired print";
+    if (const Status apart =
+            check_apart({{"the print", lyr_path}}, {{what, may_write ? output_path : ""}});
         !apart)
         return apart;
     const SignalWatch watch(program.name);
     if (request.verify) return verify_print(lyr_path);
     if (request.repair) return repair_print(lyr_path, output_path);
+    if (request.thumbnail) return write_thumbnail(lyr_path, output_path);
     return diff_prints(request.diff_path, lyr_path);
 }
 

@@ -1,4 +1,5 @@
-// What lyrview does with prints that may be damaged, and with two of them: --verify, --repair, --diff.
+// What lyrview does with prints that may be damaged, with two of them, and with their pictures: --verify, --repair, --diff,
+// --thumbnail.
 
 #pragma once
 
@@ -10,10 +11,10 @@
 namespace lyr::command_line {
 
 struct CheckRequest {
-    bool verify = false, repair = false;
+    bool verify = false, repair = false, thumbnail = false;
     std::string diff_path;  // the print that the other one is compared with
 
-    bool any() const { return verify || repair || !diff_path.empty(); }
+    bool any() const { return verify || repair || thumbnail || !diff_path.empty(); }
 };
 
 void add_checks(CLI::App& app, CheckRequest& request);

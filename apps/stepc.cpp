@@ -193,13 +193,14 @@ std::string summary_text(const Arguments& arguments, const slicer::Summary& summ
 
 // The print, by way of a .lyr file if it is to be something else.
 Result<slicer::Summary> print(Model model, const Arguments& arguments,
-                              const slicer::Progress& progress, Diagnostics& diagnostics) {
+                              const slicer::Options& options, const slicer::Progress& progress,
+                              Diagnostics& diagnostics) {
     const std::string name = arguments.step_path == "-"
                                  ? standard_input_name
                                  : std::filesystem::path(arguments.step_path).filename().string();
     const auto print_to = [&](const std::string& path) {
-        return slicer::print(std::move(model), name, path, arguments.report_path, arguments.options,
-                             progress, diagnostics);
+        return slicer::print(std::move(model), name, path, arguments.report_path, options, progress,
+                             diagnostics);
     };
     if (arguments.format == ExportFormat::lyr) return print_to(arguments.output_path);
     auto file = ReplaceFile::open(arguments.output_path);
@@ -229,13 +230,14 @@ Result<slicer::Summary> slice(const Arguments& arguments, ProgressLine& line,
         heights = std::move(*read);
     }
     line.show("reading");
-    auto model = slicer::load(arguments.step_path, arguments.options, diagnostics);
+    slicer::Options options = arguments.options;
+    auto model = slicer::load(arguments.step_path, options, diagnostics, &options.source_sha256);
     if (!model) return model.error();
     if (arguments.sections()) {
         return slicer::section_at(*model, heights, arguments.report_path, arguments.options,
                                   progress, diagnostics);
     }
-    return print(std::move(*model), arguments, progress, diagnostics);
+    return print(std::move(*model), arguments, options, progress, diagnostics);
 }
 
 // What the options say together, and the name of the print where they do not say it.

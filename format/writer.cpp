@@ -75,6 +75,13 @@ std::span<const std::byte> bytes_of(std::string_view text) {
     return std::as_bytes(std::span(text.data(), text.size()));
 }
 
+Status check(const std::vector<Thumbnail>& thumbnails, const std::string& path) {
+    for (const Thumbnail& thumbnail : thumbnails)
+        if (thumbnail.png.size() + 8 > longest_payload)
+            return usage("a thumbnail is longer than 16 MiB", path);
+    return Done{};
+}
+
 }  // namespace
 
 class Writer::Implementation {
@@ -91,6 +98,7 @@ public:
     Implementation& operator=(const Implementation&) = delete;
 
     Status append(const EncodedLayer& layer);
+    Status set_thumbnails(std::vector<Thumbnail> thumbnails);
     Result<FileTotals> finish();
 
 private:
@@ -133,6 +141,12 @@ Status Writer::Implementation::append(const EncodedLayer& layer) {
     count(layer);
     if (waiting_.size() <= most_waiting_bytes) return Done{};
     return spill();
+}
+
+Status Writer::Implementation::set_thumbnails(std::vector<Thumbnail> thumbnails) {
+    if (Status checked = check(thumbnails, path_); !checked) return checked;
+    metadata_.thumbnails = std::move(thumbnails);
+    return Done{};
 }
 
 void Writer::Implementation::frame(const EncodedLayer& layer) {
@@ -286,9 +300,7 @@ Result<Writer> Writer::create(const std::string& path, Quantum quantum, Metadata
         return usage("the metadata is longer than 64 KiB", path);
     if (metadata.configuration.size() > longest_payload)
         return usage("the configuration is longer than 16 MiB", path);
-    for (const Thumbnail& thumbnail : metadata.thumbnails)
-        if (thumbnail.png.size() + 8 > longest_payload)
-            return usage("a thumbnail is longer than 16 MiB", path);
+    if (Status checked = check(metadata.thumbnails, path); !checked) return checked.error();
     Result<ReplaceFile> file = ReplaceFile::open(path);
     if (!file) return file.error();
     return Writer(
@@ -297,6 +309,10 @@ Result<Writer> Writer::create(const std::string& path, Quantum quantum, Metadata
 
 Status Writer::append(const EncodedLayer& layer) {
     return implementation_->append(layer);
+}
+
+Status Writer::set_thumbnails(std::vector<Thumbnail> thumbnails) {
+    return implementation_->set_thumbnails(std::move(thumbnails));
 }
 
 Result<FileTotals> Writer::finish() {

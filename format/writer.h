@@ -149,6 +149,9 @@ public:
     Writer& operator=(Writer&&) = delete;
     ~Writer();
 
+    // Instead of the metadata's. Errors: longer than a block may be (usage).
+    Status set_thumbnails(std::vector<Thumbnail> thumbnails);
+
     // The next layer. Errors: another quantum than the file's (internal); temporary file (output).
     Status append(const EncodedLayer& layer);
 

@@ -100,7 +100,8 @@ Diagnostic in_layer(Diagnostic error, std::uint32_t index) {
 }
 
 Status take_operations(const format::EncodedLayer& layer, Plan& plan) {
-    format::ChunkDecoder decoder;
+    format::MotionHistory history;
+    format::ChunkDecoder decoder(history);
     decoder.begin_layer(start_of(layer), layer.quantum);
     format::Operation operation;
     for (const format::EncodedLayer::Chunk& chunk : layer.chunks) {

@@ -156,6 +156,15 @@ Eigen::AlignedBox3d with_support(Eigen::AlignedBox3d box, const SupportPlan& sup
     return box;
 }
 
+// All copies, with what is under them.
+format::PicturedBox pictured_box(const Eigen::AlignedBox3d& box, const PlateLayout& plate,
+                                 double top_mm) {
+    Eigen::AlignedBox3d all = box;
+    for (const Vector2& shift : plate.shifts)
+        all.extend(box.translated(Vector3(shift.x(), shift.y(), 0)));
+    return {all.min().x(), all.min().y(), all.max().x(), all.max().y(), top_mm};
+}
+
 Model on_bed(Model model, const Options& options, Eigen::AlignedBox3d& box) {
     box = bounding_box(model, options.tolerance(), thread_count(options));
     const Vector3 move(options.profile.plate.at_mm[0] - box.min().x(),
@@ -177,6 +186,7 @@ format::Metadata metadata(const std::string& source_name, std::size_t copies,
             data.objects.push_back(source_name + ' ' + std::to_string(i));
     data.generator = "stepc " LYR_VERSION;
     data.source_name = source_name;
+    data.source_sha256 = options.source_sha256;
     data.printer = options.machine().name;
     data.material = options.profile.filament.material;
     data.profile = options.profile_name;
@@ -271,14 +281,16 @@ Result<Summary> print(Model model, const std::string& source_name, const std::st
         support.find_overhangs(placed, cutter, *blocked, options);
         support.find_areas(options, diagnostics);
     }
-    const auto plate =
-        lay_out(with_support(summary.box, support, spans.size(), options.profile), options.profile);
+    const auto printed_box = with_support(summary.box, support, spans.size(), options.profile);
+    const auto plate = lay_out(printed_box, options.profile);
     if (!plate) return plate.error();
     summary.placed = layout_text(*plate);
     warn_beside_plate(*plate, options.profile, diagnostics);
-    const auto estimate =
-        write_layers({*layers, spans, support, *plate, options}, *writer, progress, diagnostics);
+    format::ThumbnailPainter painter(pictured_box(printed_box, *plate, spans.back().top_mm));
+    const auto estimate = write_layers({*layers, spans, support, *plate, options}, *writer, painter,
+                                       progress, diagnostics);
     if (!estimate) return estimate.error();
+    if (Status set = writer->set_thumbnails(painter.thumbnails()); !set) return set.error();
     if (report) {
         for (const OutlinedLayer& layer : *layers) report->write(to_json(layer.section));
         if (Status written = report->flush(); !written) return written.error();

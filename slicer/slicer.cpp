@@ -10,6 +10,7 @@
 #include "parser/import/import.h"
 #include "parser/part21/part21.h"
 #include "slicer/mend.h"
+#include "slicer/sha256.h"
 
 namespace lyr::slicer {
 namespace {
@@ -29,9 +30,11 @@ Diagnostic in_file(Diagnostic diagnostic, const part21::File& file) {
 
 }  // namespace
 
-Result<Model> load(const std::string& step_path, const Options& options, Diagnostics& diagnostics) {
+Result<Model> load(const std::string& step_path, const Options& options, Diagnostics& diagnostics,
+                   std::string* sha256) {
     auto file = open(step_path);
     if (!file) return file.error();
+    if (sha256) *sha256 = sha256_of(file->text());
     diagnostics.insert(diagnostics.end(), file->diagnostics().begin(), file->diagnostics().end());
     Diagnostics found;
     auto model = importer::import_model(*file, found);

@@ -42,6 +42,7 @@ struct Options {
     lyr::profile::Profile profile;
     std::string profile_name;   // for the file's metadata, as the configuration
     std::string configuration;  // all settings as text, verbatim
+    std::string source_sha256;  // of the model's file, for the print's metadata
     // Whose limits the estimates keep; none: a generic one.
     std::optional<config::Printer> printer{};
     Vector3 up = Vector3::UnitZ();
@@ -91,8 +92,9 @@ struct SectionFigures {
     std::uint32_t open = 0;
 };
 
-// `step_path` may be "-", standard input.
-Result<Model> load(const std::string& step_path, const Options& options, Diagnostics& diagnostics);
+// `step_path` may be "-", standard input. `sha256`, if asked for, is that of the file (64 hexadecimal digits).
+Result<Model> load(const std::string& step_path, const Options& options, Diagnostics& diagnostics,
+                   std::string* sha256 = nullptr);
 
 // One line a section: {"z":...,"area_mm2":...,"length_mm":...,"loops":...,"lines":...,"arcs":...,"open":0}
 std::string to_json(const SectionFigures& figures);

@@ -109,8 +109,9 @@ std::vector<Copy> copies_of(const PlateLayout& plate, std::span<const std::uint3
 // Appends layers, each with its time: that of its own motions and of the way to it.
 class TimedWriter {
 public:
-    TimedWriter(format::Writer& writer, const Estimator& estimator)
-        : writer_(writer), estimator_(estimator), head_(estimator.start()) {}
+    TimedWriter(format::Writer& writer, format::ThumbnailPainter& painter,
+                const Estimator& estimator)
+        : writer_(writer), painter_(painter), estimator_(estimator), head_(estimator.start()) {}
 
     Status append(format::EncodedLayer layer, std::uint32_t index, const LayerEstimate& made) {
         const auto way = estimator_.approach(head_, layer, index);
@@ -119,12 +120,14 @@ public:
         estimate_ += *way;
         estimate_ += made.estimate;
         head_ = made.end;
+        painter_.add(layer);
         return writer_.append(layer);
     }
     const Estimate& estimate() const { return estimate_; }
 
 private:
     format::Writer& writer_;
+    format::ThumbnailPainter& painter_;
     const Estimator& estimator_;
     moves::Head head_;
     Estimate estimate_{};
@@ -205,9 +208,10 @@ void write_in_sequence(const Job& job, Sink& sink, Diagnostics& diagnostics) {
 }  // namespace
 
 Result<Estimate> write_layers(const LayersToWrite& layers, format::Writer& writer,
-                              const Progress& progress, Diagnostics& diagnostics) {
+                              format::ThumbnailPainter& painter, const Progress& progress,
+                              Diagnostics& diagnostics) {
     const Job job{layers};
-    Sink sink{.timed = TimedWriter(writer, job.estimator), .progress = progress};
+    Sink sink{.timed = TimedWriter(writer, painter, job.estimator), .progress = progress};
     if (job.in.plate.is_sequential()) {
         write_in_sequence(job, sink, diagnostics);
     } else {

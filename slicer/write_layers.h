@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include "format/thumbnail/painter.h"
 #include "format/writer.h"
 #include "slicer/outline.h"
 #include "slicer/plate.h"
@@ -18,7 +19,9 @@ struct LayersToWrite {
 };
 
 // Fills and order are made once for all copies. The print's estimate; errors are those of the writer and the estimator.
+// `painter` sees each layer, too.
 Result<Estimate> write_layers(const LayersToWrite& layers, format::Writer& writer,
-                              const Progress& progress, Diagnostics& diagnostics);
+                              format::ThumbnailPainter& painter, const Progress& progress,
+                              Diagnostics& diagnostics);
 
 }  // namespace lyr::slicer

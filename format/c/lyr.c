@@ -5,6 +5,7 @@
 #include "lyr.h"
 
 enum { before_layers, in_layer, in_chunk, behind_layers, at_end };
+enum { smooth_run = 0x48, parallel_run, repeated_run };
 enum { no_hatch, hatch_row, hatch_start, hatch_end };
 enum { metadata_block = 1, layer_block, chunk_block, index_block, end_block };
 enum { longest_payload = 65528, frame_bytes = 8, end_bytes = 36, most_predicted = 32 };
@@ -557,8 +558,13 @@ static bool decode_packed(lyr_reader* r, lyr_operation* o) {
     const int64_t ds = get_bits(r, d->orders >> 4);
     if (--d->packed_left == 0 && d->bit != 0) d->bit = 0, ++r->cursor;
     if (r->error.status != LYR_OK) return false;
-    if (d->parallel) {
+    if (d->packed == parallel_run) {
         expect_beside(r, &x, &y, &sagitta);
+    } else if (d->packed == repeated_run) {
+        const lyr_motion* old = &r->history[d->beside++ % LYR_HISTORY];
+        x = (int64_t)d->head.x + old->to_x - old->from_x;
+        y = (int64_t)d->head.y + old->to_y - old->from_y;
+        sagitta = old->sagitta;
     } else {
         x = d->head.x, y = d->head.y;
         const lyr_motion* last = &r->history[(d->motions - 1) % LYR_HISTORY];
@@ -576,26 +582,35 @@ static bool decode_packed(lyr_reader* r, lyr_operation* o) {
     return move(r, o, o->sagitta == 0 ? LYR_LINE : LYR_ARC) && remember(r, o);
 }
 
-static bool begin_packed(lyr_reader* r, lyr_operation* o, bool parallel) {
+// What a parallel or repeated run refers to.
+static bool get_reference(lyr_reader* r) {
     lyr_decoder* d = &r->decoder;
-    d->parallel = parallel;
-    if (parallel) {
-        const int64_t back = get_signed(r), distance = get_signed(r);
-        if (!beyond(back, LYR_HISTORY)) d->back += back;
-        if (!beyond(distance, 2 * farthest_beside)) d->distance += distance;
-        const uint64_t kept = d->motions < LYR_HISTORY ? d->motions : LYR_HISTORY;
-        if (beyond(back, LYR_HISTORY) || beyond(distance, 2 * farthest_beside) || d->back < 2 ||
-            d->back > (int64_t)kept || beyond(d->distance, farthest_beside))
-            return wrong(r, "a run is parallel to what is out of reach");
-        d->beside = d->motions - (uint64_t)d->back;
-        d->course = course_of(&r->history[d->beside % LYR_HISTORY]);
-    } else if (d->motions > 0) {
+    const bool beside = d->packed == parallel_run;
+    const int64_t kept = (int64_t)(d->motions < LYR_HISTORY ? d->motions : LYR_HISTORY);
+    const int64_t back = get_signed(r);
+    if (!beyond(back, LYR_HISTORY)) d->back += back;
+    if (beyond(back, LYR_HISTORY) || d->back < (beside ? 2 : 1) || d->back > kept)
+        return wrong(r, "a run leans on motions out of reach");
+    d->beside = d->motions - (uint64_t)d->back;
+    if (!beside) return true;
+    const int64_t distance = get_signed(r);
+    if (!beyond(distance, 2 * farthest_beside)) d->distance += distance;
+    if (beyond(distance, 2 * farthest_beside) || beyond(d->distance, farthest_beside))
+        return wrong(r, "a run is too far from what it is parallel to");
+    d->course = course_of(&r->history[d->beside % LYR_HISTORY]);
+    return true;
+}
+
+static bool begin_packed(lyr_reader* r, lyr_operation* o, uint8_t code) {
+    lyr_decoder* d = &r->decoder;
+    d->packed = code;
+    d->follows = false;
+    if (code != smooth_run && !get_reference(r)) return false;
+    if (code == smooth_run && d->motions > 0) {
         const lyr_motion* last = &r->history[(d->motions - 1) % LYR_HISTORY];
         const double x = (double)last->to_x - last->from_x, y = (double)last->to_y - last->from_y;
         d->follows = last->to_x == d->head.x && last->to_y == d->head.y;
         d->length = square_root(x * x + y * y);
-    } else {
-        d->follows = false;
     }
     d->packed_left = get_varint(r);
     d->orders = get_byte(r);
@@ -767,7 +782,7 @@ static bool decode(lyr_reader* r, lyr_operation* o) {
     if (code <= 0x45) return decode_circle(r, o, code);
     if (code == 0x46) return decode_grid(r);
     if (code == LYR_HATCH) return decode_hatch(r, o);
-    if (code == 0x48 || code == 0x49) return begin_packed(r, o, code == 0x49);
+    if (code >= smooth_run && code <= repeated_run) return begin_packed(r, o, code);
     if (code == LYR_WIPE) return decode_wipe(r, o);
     if (code < 0xf0) return decode_setting(r, o, code);
     const uint64_t bytes = get_varint(r);

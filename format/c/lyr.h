@@ -94,7 +94,7 @@ typedef enum lyr_kind {
     LYR_TRAVEL = 0x40,        // without extruding
     LYR_CIRCLE = 0x42,        // a turn about center_x, center_y; `to` is off `from` in z at most
     LYR_HATCH = 0x47,         // a run begins; its lines and travels follow
-    LYR_WIPE = 0x4a,          // a piece: sagitta (0: a line); value: depth, um; number: pieces left
+    LYR_WIPE = 0x4b,          // a piece: sagitta (0: a line); value: depth, um; number: pieces left
     LYR_PATH = 0x50,          // the style from here on; the next three change it
     LYR_WIDTH = 0x51,         // value: 0.1 um
     LYR_SPEED = 0x52,         // value: 0.01 mm/s
@@ -137,8 +137,8 @@ typedef struct lyr_course {
 } lyr_course;
 typedef struct lyr_decoder {
     lyr_point head, wipe_from;
-    bool has_path, has_grid, one_way, forward, linked, group_linked, parallel, follows;
-    uint8_t run_code, run_left, stage, now, before, two_before, order, orders, bit;
+    bool has_path, has_grid, one_way, forward, linked, group_linked, follows;
+    uint8_t packed, run_code, run_left, stage, now, before, two_before, order, orders, bit;
     const uint8_t* wipe_at;
     uint32_t wipe_depth, wipe_left, wipe_moves;
     uint64_t pieces, pieces_left, packed_left, motions, beside;

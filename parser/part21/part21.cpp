@@ -54,6 +54,9 @@ Result<File> File::parse(std::string name, std::string text) {
 const std::string& File::name() const {
     return table_->name;
 }
+std::string_view File::text() const {
+    return table_->source.text();
+}
 const Header& File::header() const {
     return table_->header;
 }

@@ -74,6 +74,7 @@ public:
     ~File();
 
     const std::string& name() const;
+    std::string_view text() const;  // as it was read
     const Header& header() const;
     const Diagnostics& diagnostics() const;  // warnings met while indexing
 

@@ -103,3 +103,11 @@ TEST_CASE("lyrview --diff: 0 for the same, 9 for others, 3 for what cannot be re
     check_failure(folder.run("lyrview a.lyr --verify --layer 1"), 2, "stand alone");
     check_failure(folder.run("lyrview a.lyr --verify -o x"), 2, "-o goes with --repair");
 }
+
+TEST_CASE("lyrview --thumbnail: a print without one is said so") {
+    const Folder folder = with_prints("lyrview-thumbnail");
+    check_failure(folder.run("lyrview --thumbnail a.lyr -o a.png"), 3, "no thumbnail");
+    check_failure(folder.run("lyrview --thumbnail a.lyr -o a.lyr"), 2, "would overwrite");
+    check_failure(folder.run("lyrview --thumbnail a.lyr --verify"), 2, "stand alone");
+    CHECK_FALSE(fs::exists(folder / "a.png"));
+}

@@ -261,3 +261,23 @@ TEST_CASE("stepc: a signal that was ignored from the beginning stays so") {
     CHECK(fs::exists(folder / "a.lyr"));
     CHECK(lines_in(text_of(folder / "report")) == 381);
 }
+
+TEST_CASE("stepc: the print states the SHA-256 of the model's file, and has two pictures") {
+    const Folder folder = with_part("stepc-source");
+    const Ended sum = folder.run("sha256sum < p.step");
+    REQUIRE(sum.out.size() > 64);
+    for (const char* script : {"stepc p.step -o p.lyr --layer-height 1 --threads 1",
+                               "stepc - -o q.lyr --layer-height 1 --threads 4 < p.step"})
+        CHECK(folder.run(script).status == 0);
+    for (const char* print : {"p.lyr", "q.lyr"}) {
+        CAPTURE(print);
+        const Ended info = folder.run("lyrview --info " + std::string(print));
+        CHECK(info.out.find(sum.out.substr(0, 64)) != std::string::npos);
+        CHECK(folder.run("lyrview --thumbnail " + std::string(print) + " -o " + print + ".png")
+                  .status == 0);
+    }
+    const std::string png = text_of(folder / "p.lyr.png");
+    CHECK(png.starts_with("\x89PNG\r\n\x1a\n"));
+    // The same for any number of threads.
+    CHECK(png == text_of(folder / "q.lyr.png"));
+}
