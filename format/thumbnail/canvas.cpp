@@ -44,8 +44,7 @@ std::array<std::uint8_t, 4 * colors> palette() {
 }
 
 // Of a pixel whose samples have this sum of shades, and of which so many have one.
-std::uint8_t color_index(std::size_t sum, std::size_t covered) {
-    constexpr std::size_t all = Canvas::samples * Canvas::samples;
+std::uint8_t color_index(std::size_t sum, std::size_t covered, std::size_t all) {
     if (covered == 0) return 0;
     const std::size_t shade = sum / covered;
     if (covered == all)
@@ -77,8 +76,7 @@ std::vector<std::byte> png_of(const std::vector<std::uint8_t>& pixels, ImageSize
 }  // namespace
 
 Canvas::Canvas(ImageSize size)
-    : size_(size),
-      columns_(std::size_t{size.width} * samples),
+    : columns_(std::size_t{size.width} * samples),
       rows_(std::size_t{size.height} * samples),
       shades_(columns_ * rows_),
       nears_(columns_ * rows_, -std::numeric_limits<float>::infinity()) {}
@@ -123,21 +121,32 @@ void Canvas::draw(const Stroke& stroke) {
     }
 }
 
-Thumbnail Canvas::thumbnail() const {
-    std::vector<std::uint8_t> pixels(std::size_t{size_.width} * size_.height);
-    for (std::size_t y = 0; y < size_.height; ++y) {
-        for (std::size_t x = 0; x < size_.width; ++x) {
+Thumbnail Canvas::thumbnail(ImageSize size, double samples_a_pixel) const {
+    const auto borders = [&](std::uint32_t pixels, std::size_t count) {
+        std::vector<std::size_t> at;
+        const auto all = static_cast<double>(count);
+        for (std::uint32_t i = 0; i <= pixels; ++i)
+            at.push_back(static_cast<std::size_t>(
+                std::clamp(std::round(all / 2 + (i - pixels / 2.0) * samples_a_pixel), 0.0, all)));
+        return at;
+    };
+    const std::vector<std::size_t> columns = borders(size.width, columns_),
+                                   rows = borders(size.height, rows_);
+    std::vector<std::uint8_t> pixels(std::size_t{size.width} * size.height);
+    for (std::size_t y = 0; y < size.height; ++y) {
+        for (std::size_t x = 0; x < size.width; ++x) {
             std::size_t sum = 0, covered = 0;
-            for (std::size_t row = y * samples; row < (y + 1) * samples; ++row)
-                for (std::size_t column = x * samples; column < (x + 1) * samples; ++column) {
+            for (std::size_t row = rows[y]; row < rows[y + 1]; ++row)
+                for (std::size_t column = columns[x]; column < columns[x + 1]; ++column) {
                     const std::uint8_t shade = shades_[row * columns_ + column];
                     sum += shade;
                     covered += shade > 0;
                 }
-            pixels[y * size_.width + x] = color_index(sum, covered);
+            const std::size_t all = (rows[y + 1] - rows[y]) * (columns[x + 1] - columns[x]);
+            pixels[y * size.width + x] = color_index(sum, covered, all);
         }
     }
-    return {size_.width, size_.height, png_of(pixels, size_)};
+    return {size.width, size.height, png_of(pixels, size)};
 }
 
 }  // namespace lyr::format

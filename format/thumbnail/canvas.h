@@ -1,4 +1,4 @@
-// A picture in shades, drawn with thick strokes at three times its size, and then smoothed and coloured.
+// A picture in shades, drawn with thick strokes at twice its size or more, and then smoothed and coloured.
 //
 // Contract
 //  1. The bytes depend on the calls only.
@@ -20,8 +20,8 @@ struct ImageSize {
 
 class Canvas {
 public:
-    // Samples a pixel has in each direction.
-    static constexpr std::uint32_t samples = 3;
+    // A pixel of the largest picture has so many in each direction.
+    static constexpr std::uint32_t samples = 2;
 
     explicit Canvas(ImageSize size);
 
@@ -36,8 +36,8 @@ public:
     };
     void draw(const Stroke& stroke);
 
-    // With a transparent background; a PNG with a palette.
-    Thumbnail thumbnail() const;
+    // The canvas' middle with so many samples to a pixel; a transparent background. A PNG with a palette.
+    Thumbnail thumbnail(ImageSize size, double samples_a_pixel) const;
 
 private:
     struct Span {
@@ -48,7 +48,6 @@ private:
     // From a sample on, as many as lie between low and high of `count`, each `step` behind the one before.
     void fill(std::size_t first, std::size_t step, std::size_t count, const Span& span);
 
-    ImageSize size_;
     std::size_t columns_, rows_;
     std::vector<std::uint8_t> shades_;
     std::vector<float> nears_;

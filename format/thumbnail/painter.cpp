@@ -53,6 +53,19 @@ bool is_wall(Role role) {
     }
 }
 
+// Under walls and skins of the layers above, but where a wall's top is seen; there a layer or two lower does as well.
+constexpr std::size_t hidden_every = 3;
+
+bool is_mostly_hidden(Role role) {
+    return role == Role::inner_wall || role == Role::gap_fill || role == Role::solid_infill ||
+           role == Role::sparse_infill || role == Role::internal_bridge;
+}
+
+double pixels_a_mm(ImageSize size, double width_mm, double height_mm) {
+    const double free = 1 - 2 * margin;
+    return std::min(free * size.width / width_mm, free * size.height / height_mm);
+}
+
 // Of a vertical wall in this direction, on the side that is seen.
 double wall_shade(double dx, double dy) {
     const double length = std::sqrt(dx * dx + dy * dy);
@@ -69,30 +82,34 @@ double wall_shade(double dx, double dy) {
 
 // Draws the motions of one layer.
 struct ThumbnailPainter::Pen {
-    std::vector<View>& views;
+    ThumbnailPainter& painter;
     double mm;         // a quantum
     double share = 1;  // of the shade, by height
+    bool draws_hidden = true;
     PathStyle style{};
 
+    bool is_wanted() const {
+        return style.role != Role::skirt && (draws_hidden || !is_mostly_hidden(style.role));
+    }
+
     void line(double x0, double y0, double x1, double y1, double z) {
-        if (style.role == Role::skirt) return;
+        if (!is_wanted()) return;
         const bool wall = is_wall(style.role);
         const double base = wall                           ? wall_shade(x1 - x0, y1 - y0)
                             : style.role == Role::top_skin ? skin
                                                            : inside;
         const auto shade = static_cast<std::uint8_t>(std::clamp(base * share, 1.0, 255.0));
         const Projected from = projected(x0, y0, z), to = projected(x1, y1, z);
-        for (View& view : views) {
-            const double scale = view.scale;
-            view.canvas.draw({(from.x - view.left) * scale, (view.top - from.y) * scale,
-                              (to.x - view.left) * scale, (view.top - to.y) * scale,
-                              std::max(0.5, style.width_mm / 2 * scale),
-                              wall ? style.height_mm * rise_cos * scale : 0, shade, from.near,
-                              to.near});
-        }
+        const double scale = painter.scale_;
+        painter.canvas_.draw(
+            {(from.x - painter.left_mm_) * scale, (painter.top_mm_ - from.y) * scale,
+             (to.x - painter.left_mm_) * scale, (painter.top_mm_ - to.y) * scale,
+             std::max(0.5, style.width_mm / 2 * scale),
+             wall ? style.height_mm * rise_cos * scale : 0, shade, from.near, to.near});
     }
 
     void turn(const Point& from, const Point& to, double center_x, double center_y, double sweep) {
+        if (!is_wanted()) return;
         const double z = static_cast<double>(to.z) * mm;
         double x = static_cast<double>(from.x), y = static_cast<double>(from.y);
         const double dx = x - center_x, dy = y - center_y;
@@ -111,6 +128,7 @@ struct ThumbnailPainter::Pen {
              static_cast<double>(l.to.z) * mm);
     }
     void take(const Arc& arc) {
+        if (!is_wanted()) return;
         const ArcShape shape = arc_shape(arc);
         turn(arc.from, arc.to, shape.center_x, shape.center_y, shape.sweep_rad);
     }
@@ -123,12 +141,8 @@ struct ThumbnailPainter::Pen {
     void take(const Other&) {}
 };
 
-ThumbnailPainter::ThumbnailPainter(const PicturedBox& box) : high_z_mm_(box.high_z_mm) {
-    for (const ImageSize size : {large_thumbnail, small_thumbnail})
-        views_.push_back(view_of(size, box));
-}
-
-ThumbnailPainter::View ThumbnailPainter::view_of(ImageSize size, const PicturedBox& box) const {
+ThumbnailPainter::ThumbnailPainter(const PicturedBox& box)
+    : high_z_mm_(box.high_z_mm), canvas_(large_thumbnail) {
     double low_x = INFINITY, low_y = INFINITY, high_x = -INFINITY, high_y = -INFINITY;
     for (const double x : {box.low_x_mm, box.high_x_mm})
         for (const double y : {box.low_y_mm, box.high_y_mm})
@@ -137,13 +151,11 @@ ThumbnailPainter::View ThumbnailPainter::view_of(ImageSize size, const PicturedB
                 low_x = std::min(low_x, corner.x), high_x = std::max(high_x, corner.x);
                 low_y = std::min(low_y, corner.y), high_y = std::max(high_y, corner.y);
             }
-    const double width = size.width * double{Canvas::samples},
-                 height = size.height * double{Canvas::samples};
-    const double free = 1 - 2 * margin;
-    const double scale = std::min(free * width / std::max(high_x - low_x, least_extent_mm),
-                                  free * height / std::max(high_y - low_y, least_extent_mm));
-    return {Canvas(size), scale, (low_x + high_x) / 2 - width / scale / 2,
-            (low_y + high_y) / 2 + height / scale / 2};
+    width_mm_ = std::max(high_x - low_x, least_extent_mm);
+    height_mm_ = std::max(high_y - low_y, least_extent_mm);
+    scale_ = Canvas::samples * pixels_a_mm(large_thumbnail, width_mm_, height_mm_);
+    left_mm_ = (low_x + high_x) / 2 - large_thumbnail.width * Canvas::samples / scale_ / 2;
+    top_mm_ = (low_y + high_y) / 2 + large_thumbnail.height * Canvas::samples / scale_ / 2;
 }
 
 void ThumbnailPainter::add(const EncodedLayer& layer) {
@@ -153,7 +165,8 @@ void ThumbnailPainter::add(const EncodedLayer& layer) {
     decoder.begin_layer({quantum.quanta(layer.state.start_x_mm),
                          quantum.quanta(layer.state.start_y_mm), quantum.quanta(layer.state.z_mm)},
                         quantum);
-    Pen pen{views_, quantum.mm(1)};
+    Pen pen{*this, quantum.mm(1)};
+    pen.draws_hidden = layers_++ % hidden_every == 0 || layer.state.z_mm >= high_z_mm_;
     const double height = high_z_mm_ > 0 ? std::clamp(layer.state.z_mm / high_z_mm_, 0.0, 1.0) : 1;
     pen.share = least_height_share + (1 - least_height_share) * height;
     Operation operation;
@@ -169,7 +182,8 @@ void ThumbnailPainter::add(const EncodedLayer& layer) {
 
 std::vector<Thumbnail> ThumbnailPainter::thumbnails() const {
     std::vector<Thumbnail> out;
-    for (const View& view : views_) out.push_back(view.canvas.thumbnail());
+    for (const ImageSize size : {large_thumbnail, small_thumbnail})
+        out.push_back(canvas_.thumbnail(size, scale_ / pixels_a_mm(size, width_mm_, height_mm_)));
     return out;
 }
 

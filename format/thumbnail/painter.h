@@ -32,17 +32,14 @@ public:
     std::vector<Thumbnail> thumbnails() const;
 
 private:
-    struct View {
-        Canvas canvas;
-        double scale = 0;  // samples a mm
-        double left = 0, top = 0;
-    };
     struct Pen;
 
-    View view_of(ImageSize size, const PicturedBox& box) const;
-
+    // In the picture, of what is shown.
+    double width_mm_ = 0, height_mm_ = 0, left_mm_ = 0, top_mm_ = 0;
     double high_z_mm_;
-    std::vector<View> views_;
+    double scale_;  // samples a mm
+    std::size_t layers_ = 0;
+    Canvas canvas_;
 };
 
 }  // namespace lyr::format

@@ -10,7 +10,7 @@
 #include "../files.h"
 #include "../sample.h"
 #include "format/arc.h"
-#include "format/export/base64.h"
+#include "base/base64.h"
 #include "format/export/fixed_point.h"
 #include "gcode_machine.h"
 

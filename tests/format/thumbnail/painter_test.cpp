@@ -149,7 +149,7 @@ TEST_CASE("canvas 2: strokes of all directions, far outside or through, are cut 
             canvas.draw({x, y, x + 1, y + 1, 2, 3, 200});
         }
         canvas.draw({30, 15, 30, 15, 4, 0, 200});
-        const Picture picture = picture_of(canvas.thumbnail());
+        const Picture picture = picture_of(canvas.thumbnail({20, 10}, Canvas::samples));
         CHECK(picture.brightness(10, 5) > 0);
         CHECK(picture.drawn() <= 200);
     }
@@ -161,7 +161,7 @@ TEST_CASE("canvas: the nearer of two strokes that cross is seen, whichever is dr
         Canvas canvas({20, 10});
         canvas.draw(near_first ? near : far);
         canvas.draw(near_first ? far : near);
-        const Picture picture = picture_of(canvas.thumbnail());
+        const Picture picture = picture_of(canvas.thumbnail({20, 10}, Canvas::samples));
         CHECK(picture.brightness(10, 5) > 450);
         CHECK(picture.brightness(10, 1) < 350);
     }
