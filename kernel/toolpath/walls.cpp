@@ -28,6 +28,10 @@ constexpr double mitre_limit = 5;
 // share of the width.
 constexpr double cut_margin_share = 0.05;
 
+// How far around narrow parts joints reach: discs that fit where no wall does are smaller, and so are all those of what
+// is cut off them by the mitred corners of the walls' flanks.
+constexpr double joint_widths = 2;
+
 class WallMaker {
 public:
     WallMaker(Region outline, const WallRequest& request)
@@ -154,7 +158,7 @@ private:
             offset_by(BoundedRegion(wall), outwards_mm(depth), Corner::mitre);
         // Else only edges have vanished.
         if (!is_cut && area_mm2(outside) - area_mm2(covered) <= unseen_mm * unseen_mm) return;
-        add_narrow(outside, covered, depth);
+        add_narrow(outside, wall, covered, depth);
         set_base(std::move(wall), depth);
     }
 
@@ -170,7 +174,7 @@ private:
     }
 
     // What of `outer` a wall and its flanks do not cover, if a line fits into it.
-    void add_narrow(Region outer, Region covered, std::uint32_t depth) {
+    void add_narrow(Region outer, Region wall, Region covered, std::uint32_t depth) {
         const std::vector<Contour> rest = covered.empty()
                                               ? std::vector<Contour>(outer.begin(), outer.end())
                                               : operated(outer, covered, Operation::subtract);
@@ -186,6 +190,16 @@ private:
         if (depth == 0) walls_.too_thin_mm2 += left_out_mm2;
         auto& list = depth == 0 ? walls_.thin : walls_.gaps;
         list.insert(list.end(), narrow.begin(), narrow.end());
+        if (!narrow.empty() && !wall.empty()) add_joint(outer, wall, narrow, depth);
+    }
+
+    void add_joint(Region outer, Region wall, const std::vector<Contour>& narrow,
+                   std::uint32_t depth) {
+        const std::vector<Contour> near =
+            offset_by(BoundedRegion(narrow), joint_widths * request_.width_mm, Corner::mitre);
+        auto& list = depth == 0 ? walls_.thin_joints : walls_.gap_joints;
+        list.push_back({operated(outer, near, Operation::intersect),
+                        offset_by(BoundedRegion(wall), outwards_mm(depth), Corner::round)});
     }
 
     WallRequest request_;
