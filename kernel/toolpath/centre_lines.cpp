@@ -162,7 +162,8 @@ public:
         if (!axis.complete) return {};
         const JointBoundary boundary{Boundary(joint.covered), Boundary(narrow)};
         std::vector<Point2> met;
-        for (const MedialChain& chain : medial_chains(axis, request_.min_width_mm))
+        for (const MedialChain& chain :
+             medial_chains(axis, request_.min_width_mm, &boundary.covered))
             add_outside(chain, boundary, met);
         return met;
     }

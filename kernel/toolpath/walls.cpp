@@ -187,10 +187,22 @@ private:
             opened.empty() ? opened : operated(opened, rest, Operation::intersect);
         const double left_out_mm2 = area_mm2(rest) - area_mm2(narrow);
         walls_.left_out_mm2 += left_out_mm2;
-        if (depth == 0) walls_.too_thin_mm2 += left_out_mm2;
+        if (depth == 0)
+            walls_.too_thin_mm2 += left_out_mm2 <= unseen_mm * unseen_mm
+                                       ? left_out_mm2
+                                       : beyond_mm2(rest, wall) - beyond_mm2(narrow, wall);
         auto& list = depth == 0 ? walls_.thin : walls_.gaps;
         list.insert(list.end(), narrow.begin(), narrow.end());
         if (!narrow.empty() && !wall.empty()) add_joint(outer, wall, narrow, depth);
+    }
+
+    // Of what no wall is printed in, without the notches beside the corners of walls that point into it: strands that end
+    // there cover these.
+    double beyond_mm2(Region rest, Region wall) {
+        if (wall.empty() || rest.empty()) return area_mm2(rest);
+        const double notch_mm = request_.width_mm / 2 + request_.min_width_mm;
+        const std::vector<Contour> beside = offset_by(BoundedRegion(wall), notch_mm, Corner::round);
+        return area_mm2(operated(rest, beside, Operation::subtract));
     }
 
     void add_joint(Region outer, Region wall, const std::vector<Contour>& narrow,
