@@ -32,6 +32,10 @@ constexpr double cut_margin_share = 0.05;
 // is cut off them by the mitred corners of the walls' flanks.
 constexpr double joint_widths = 2;
 
+// How far within a wall's flank strands end, as a share of the wall's width: where a rib leaves it, the wall comes to a
+// corner that points into the rib, and this much of the strand makes up for the notches beside it.
+constexpr double joint_overlap_share = 0.1;
+
 class WallMaker {
 public:
     WallMaker(Region outline, const WallRequest& request)
@@ -209,9 +213,10 @@ private:
                    std::uint32_t depth) {
         const std::vector<Contour> near =
             offset_by(BoundedRegion(narrow), joint_widths * request_.width_mm, Corner::mitre);
+        const double end_mm = outwards_mm(depth) - joint_overlap_share * request_.width_mm;
         auto& list = depth == 0 ? walls_.thin_joints : walls_.gap_joints;
         list.push_back({operated(outer, near, Operation::intersect),
-                        offset_by(BoundedRegion(wall), outwards_mm(depth), Corner::round)});
+                        offset_by(BoundedRegion(wall), end_mm, Corner::round)});
     }
 
     WallRequest request_;
