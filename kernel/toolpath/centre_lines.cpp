@@ -197,7 +197,7 @@ private:
         const Range whole{0, all.back().at_mm};
         const Range within = chain.is_closed ? whole : between_ends(chain, all, whole);
         const bool is_alone = !chain.starts_at_branch && !chain.ends_at_branch;
-        if (add_range(chain, stations, all, within) || !is_alone) return;
+        if (!add_range(chain, stations, all, within).empty() || !is_alone) return;
         const Station& widest =
             *std::max_element(all.begin(), all.end(), [](const Station& a, const Station& b) {
                 return a.point.radius_mm < b.point.radius_mm;
@@ -220,20 +220,23 @@ private:
         const Range ends{outside.front().from_mm, outside.back().to_mm};
         const Range within = chain.is_closed ? ends : between_ends(chain, all, ends);
         for (const Range& range : outside) {
-            const auto stretch = std::find_if(narrow.begin(), narrow.end(), [&](const Stretch& s) {
-                return meet(s.range, range);
-            });
-            if (stretch == narrow.end()) continue;
+            const auto is_there = [&](const Stretch& stretch) {
+                return meet(stretch.range, range);
+            };
             const Range open = common(range, within);
-            if (open.from_mm < open.to_mm && add_range(chain, stations, all, open))
-                met.push_back(stretch->inside);
+            if (!(open.from_mm < open.to_mm) ||
+                std::none_of(narrow.begin(), narrow.end(), is_there))
+                continue;
+            for (const Range& wide : add_range(chain, stations, all, open))
+                for (const Stretch& stretch : narrow)
+                    if (meet(stretch.range, wide)) met.push_back(stretch.inside);
         }
     }
 
-    // The strands along a range, if it is anywhere wide enough.
-    bool add_range(const MedialChain& chain, const Stations& stations,
-                   const std::vector<Station>& all, const Range& range) {
-        const std::vector<Range> wide = wide_ranges(all, range, chain.is_closed);
+    // The strands along a range. Gives where it is wide enough for them.
+    std::vector<Range> add_range(const MedialChain& chain, const Stations& stations,
+                                 const std::vector<Station>& all, const Range& range) {
+        std::vector<Range> wide = wide_ranges(all, range, chain.is_closed);
         made_.left_out_mm2 += area_mm2(part(stations, range.from_mm, range.to_mm));
         for (const Range& one : wide) {
             const Stations within = part(stations, one.from_mm, one.to_mm);
@@ -241,7 +244,7 @@ private:
             add_strand(within,
                        chain.is_closed && one.from_mm == 0 && one.to_mm == all.back().at_mm);
         }
-        return !wide.empty();
+        return wide;
     }
 
     // Without corners, and what lies in the strands that it branches off from. Ends of the range that are not the
