@@ -162,7 +162,8 @@ private:
             offset_by(BoundedRegion(wall), outwards_mm(depth), Corner::mitre);
         // Else only edges have vanished.
         if (!is_cut && area_mm2(outside) - area_mm2(covered) <= unseen_mm * unseen_mm) return;
-        add_narrow(outside, wall, covered, depth);
+        add_narrow(outside, covered, depth);
+        if (!wall.empty()) add_joint(outside, wall, depth);
         set_base(std::move(wall), depth);
     }
 
@@ -178,7 +179,7 @@ private:
     }
 
     // What of `outer` a wall and its flanks do not cover, if a line fits into it.
-    void add_narrow(Region outer, Region wall, Region covered, std::uint32_t depth) {
+    void add_narrow(Region outer, Region covered, std::uint32_t depth) {
         const std::vector<Contour> rest = covered.empty()
                                               ? std::vector<Contour>(outer.begin(), outer.end())
                                               : operated(outer, covered, Operation::subtract);
@@ -192,25 +193,25 @@ private:
         const double left_out_mm2 = area_mm2(rest) - area_mm2(narrow);
         walls_.left_out_mm2 += left_out_mm2;
         if (depth == 0)
-            walls_.too_thin_mm2 += left_out_mm2 <= unseen_mm * unseen_mm
-                                       ? left_out_mm2
-                                       : beyond_mm2(rest, wall) - beyond_mm2(narrow, wall);
+            walls_.too_thin_mm2 += left_out_mm2 > unseen_mm * unseen_mm
+                                       ? beyond_mm2(rest, covered) - beyond_mm2(narrow, covered)
+                                       : left_out_mm2;
         auto& list = depth == 0 ? walls_.thin : walls_.gaps;
         list.insert(list.end(), narrow.begin(), narrow.end());
-        if (!narrow.empty() && !wall.empty()) add_joint(outer, wall, narrow, depth);
     }
 
-    // Of what no wall is printed in, without the notches beside the corners of walls that point into it: strands that end
-    // there cover these.
-    double beyond_mm2(Region rest, Region wall) {
-        if (wall.empty() || rest.empty()) return area_mm2(rest);
-        const double notch_mm = request_.width_mm / 2 + request_.min_width_mm;
-        const std::vector<Contour> beside = offset_by(BoundedRegion(wall), notch_mm, Corner::round);
+    // Without the notches beside corners of walls that point into it: strands that end there cover these.
+    double beyond_mm2(Region rest, Region covered) {
+        if (covered.empty() || rest.empty()) return area_mm2(rest);
+        const std::vector<Contour> beside =
+            offset_by(BoundedRegion(covered), request_.min_width_mm, Corner::round);
         return area_mm2(operated(rest, beside, Operation::subtract));
     }
 
-    void add_joint(Region outer, Region wall, const std::vector<Contour>& narrow,
-                   std::uint32_t depth) {
+    // Where the narrow parts that a wall leaves of `outer` go over into it.
+    void add_joint(Region outer, Region wall, std::uint32_t depth) {
+        const std::vector<Contour>& narrow = depth == 0 ? walls_.thin : walls_.gaps;
+        if (narrow.empty()) return;
         const std::vector<Contour> near =
             offset_by(BoundedRegion(narrow), joint_widths * request_.width_mm, Corner::mitre);
         const double end_mm = outwards_mm(depth) - joint_overlap_share * request_.width_mm;

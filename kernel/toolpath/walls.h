@@ -38,8 +38,8 @@ struct Walls {
     std::vector<Strand> strands{};        // closed, the outermost first
     std::vector<std::uint32_t> depths{};  // by strand; 0: outermost
     std::vector<Contour> inside{};
-    std::vector<Contour> thin{}, gaps{};
     std::vector<Joint> thin_joints{}, gap_joints{};
+    std::vector<Contour> thin{}, gaps{};
     double left_out_mm2 = 0, too_thin_mm2 = 0;
     std::size_t second_method = 0, unresolved = 0;  // of the offsets and region operations
 };
