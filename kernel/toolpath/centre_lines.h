@@ -9,8 +9,9 @@
 //     The width of a rib with parallel sides is constant, and its strand one line; that of concentric arcs is one arc
 //     about their centre, and of two full circles a full circle.
 //  3. Strands end half their width before the region does, or, at a joint, where the wall's covering does: a flat end
-//     would reach a little into the wall, a round one overlaps it by half its width besides. Where three ribs meet, a strand runs through two of them and
-//     the third one's ends beside it. Corners are filled as far as the strand's own discs reach.
+//     would reach a little into the wall, a round one overlaps it by half its width besides. Where three ribs meet, a
+//     strand runs through two of them and the third one's ends beside it. Corners are filled as far as the strand's own
+//     discs reach.
 //  4. What is narrower than `min_width_mm` is left out, and what is too short for a strand; `left_out_mm2` has its
 //     area. Where the region is wider than `max_width_mm`, the strand is that wide, and `beside_mm2` is what it
 //     leaves; `corners_mm2` is what strands with round ends do not reach besides.

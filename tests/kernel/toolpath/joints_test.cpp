@@ -100,8 +100,8 @@ Ends ends_in(const Contours& region, const Printed& print) {
     return ends;
 }
 
-// What walls, the strands of thin parts and what is inside cover of a region around the origin, and by how much discs of
-// those strands stick out of it.
+// What walls, the strands of thin parts and what is inside cover of a region around the origin, and by how much discs
+// of those strands stick out of it.
 void check_covered(const Contours& region, const Printed& print) {
     const Boundary outline(region), inside(print.made.inside);
     std::vector<std::pair<PrintedLine, double>> lines;
