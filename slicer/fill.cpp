@@ -76,11 +76,14 @@ public:
     }
 
     // From flank to flank: of thin walls, these are the outline.
-    void narrow(Region region, format::Role role, double least_mm, double flank_mm) {
+    void narrow(Region region, std::span<const Joint> joints, format::Role role, double least_mm,
+                double flank_mm) {
         if (region.empty()) return;
-        CentreLines lines = centre_lines(region, {.min_width_mm = least_mm,
-                                                  .max_width_mm = profile_.perimeters.max_width_mm,
-                                                  .allowed_mm = allowed_mm_});
+        CentreLines lines = centre_lines(region,
+                                         {.min_width_mm = least_mm,
+                                          .max_width_mm = profile_.perimeters.max_width_mm,
+                                          .allowed_mm = allowed_mm_},
+                                         joints);
         fill.unresolved += lines.unresolved;
         for (Strand& strand : lines.strands) {
             strand.width_mm += 2 * flank_mm;
@@ -173,8 +176,10 @@ LayerFill fill_layer(std::size_t index, const LayerSpan& span, const Walls& wall
                                  .allowed_mm = options.tolerance().unite_mm()});
     filler.fill.unresolved += skins.unresolved;
     const profile::Perimeters& perimeters = profile.perimeters;
-    filler.narrow(walls.thin, format::Role::thin_wall, perimeters.min_width_mm, 0);
-    filler.narrow(walls.gaps, format::Role::gap_fill, perimeters.min_gap_mm, filler.flank_mm());
+    filler.narrow(walls.thin, walls.thin_joints, format::Role::thin_wall, perimeters.min_width_mm,
+                  0);
+    filler.narrow(walls.gaps, walls.gap_joints, format::Role::gap_fill, perimeters.min_gap_mm,
+                  filler.flank_mm());
     filler.solid(skins.bottom, format::Role::bottom_skin);
     filler.solid(skins.top, format::Role::top_skin);
     if (index > 0) filler.bridges(skins.bridge, outlines[index - 1].region());

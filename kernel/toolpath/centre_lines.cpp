@@ -1,5 +1,6 @@
 // The medial axis, less its branches into corners, is where strands run; what remains is to find where they begin and
-// end.
+// end. At a joint the axis is that of the narrow part together with what it is cut off from: it runs on through the cut
+// as if there were none, and strands are what of it lies outside of what walls cover.
 
 #include "kernel/toolpath/centre_lines.h"
 
@@ -8,6 +9,7 @@
 #include <numbers>
 
 #include "kernel/region/verify.h"
+#include "kernel/toolpath/islands.h"
 #include "kernel/toolpath/middle_path.h"
 
 namespace lyr {
@@ -68,6 +70,57 @@ struct Range {
     double from_mm, to_mm;
 };
 
+// Of a chain, within a region.
+struct Stretch {
+    Range range;
+    Point2 inside;
+};
+
+std::vector<Stretch> stretches_within(const std::vector<Station>& all, const Boundary& region) {
+    std::vector<Stretch> result;
+    std::vector<BoundaryCrossing> crossings;
+    for (std::size_t i = 1; i < all.size(); ++i) {
+        const Point2 &a = all[i - 1].point.centre, &b = all[i].point.centre;
+        region.crossings(a, b, crossings);
+        const double length = (b - a).norm();
+        double from = 0;
+        for (std::size_t k = 0; k <= crossings.size(); ++k) {
+            const double to = k < crossings.size() ? crossings[k].along_mm : length;
+            if (!(from < to)) continue;
+            const Point2 middle = a + (from + to) / (2 * length) * (b - a);
+            const Range range{all[i - 1].at_mm + from,
+                              k < crossings.size() ? all[i - 1].at_mm + to : all[i].at_mm};
+            from = to;
+            if (region.winding(middle) <= 0) continue;
+            if (!result.empty() && result.back().range.to_mm == range.from_mm)
+                result.back().range.to_mm = range.to_mm;
+            else
+                result.push_back({range, middle});
+        }
+    }
+    return result;
+}
+
+// What lies between stretches.
+std::vector<Range> outside_of(const std::vector<Stretch>& stretches, double length_mm) {
+    std::vector<Range> result;
+    double from = 0;
+    for (const Stretch& stretch : stretches) {
+        if (from < stretch.range.from_mm) result.push_back({from, stretch.range.from_mm});
+        from = stretch.range.to_mm;
+    }
+    if (from < length_mm) result.push_back({from, length_mm});
+    return result;
+}
+
+bool meet(const Range& a, const Range& b) {
+    return a.from_mm < b.to_mm && b.from_mm < a.to_mm;
+}
+
+Range common(const Range& a, const Range& b) {
+    return {std::max(a.from_mm, b.from_mm), std::min(a.to_mm, b.to_mm)};
+}
+
 // With round ends.
 double printed_mm2(const Strand& strand) {
     if (strand.widths_mm.empty()) {
@@ -87,67 +140,134 @@ double printed_mm2(const Strand& strand) {
     return area;
 }
 
+struct JointBoundary {
+    Boundary covered, narrow;
+};
+
 class LineMaker {
 public:
     explicit LineMaker(const CentreLineRequest& request)
         : request_(request), allowed_mm_(std::max(request.allowed_mm, least_allowed_mm)) {}
 
-    CentreLines make(Region narrow) {
-        MedialAxis axis = medial_axis(narrow, request_.max_width_mm);
-        if (!axis.complete && std::all_of(narrow.begin(), narrow.end(), region::is_finite))
-            axis = medial_axis(of_chords(narrow, chord_share * allowed_mm_), request_.max_width_mm);
+    void fill(Region narrow) {
+        const MedialAxis axis = axis_of(narrow);
+        complete_ = complete_ && axis.complete;
         made_.unresolved += !axis.complete;
         for (const MedialChain& chain : medial_chains(axis, request_.min_width_mm)) add(chain);
         for (const MedialDisc& disc : axis.discs)
             add_dot(disc.centre, Vector2::UnitX(), disc.radius_mm, 0);
+    }
+
+    // Gives points in the parts that strands run through, none if it does not come out right.
+    std::vector<Point2> fill_joint(Region narrow, const Joint& joint) {
+        const MedialAxis axis = axis_of(joint.around);
+        if (!axis.complete) return {};
+        const JointBoundary boundary{Boundary(joint.covered), Boundary(narrow)};
+        std::vector<Point2> met;
+        for (const MedialChain& chain :
+             medial_chains(axis, request_.min_width_mm, &boundary.covered))
+            add_outside(chain, boundary, met);
+        return met;
+    }
+
+    CentreLines made(Region narrow) {
         double rest = -made_.left_out_mm2 - made_.beside_mm2;
         for (const Contour& contour : narrow) rest += lyr::area_mm2(contour);
         for (const Strand& strand : made_.strands) rest -= printed_mm2(strand);
-        if (axis.complete) made_.corners_mm2 = std::max(0.0, rest);
+        if (complete_) made_.corners_mm2 = std::max(0.0, rest);
         return std::move(made_);
     }
 
 private:
-    void add(const MedialChain& chain) {
-        const Stations stations = stations_of(chain);
+    MedialAxis axis_of(Region region) const {
+        MedialAxis axis = medial_axis(region, request_.max_width_mm);
+        if (axis.complete || !std::all_of(region.begin(), region.end(), region::is_finite))
+            return axis;
+        return medial_axis(of_chords(region, chord_share * allowed_mm_), request_.max_width_mm);
+    }
+
+    static std::vector<Station> joined(const Stations& stations) {
         std::vector<Station> all;
         for (const std::vector<Station>& edge : stations)
             all.insert(all.end(), edge.begin(), edge.end());
-        const double length = all.back().at_mm;
-        const Range whole = chain.is_closed ? Range{0, length} : between_ends(chain, all);
-        const std::vector<Range> ranges = wide_ranges(all, whole, chain.is_closed);
+        return all;
+    }
+
+    void add(const MedialChain& chain) {
+        const Stations stations = stations_of(chain);
+        const std::vector<Station> all = joined(stations);
+        const Range whole{0, all.back().at_mm};
+        const Range within = chain.is_closed ? whole : between_ends(chain, all, whole);
         const bool is_alone = !chain.starts_at_branch && !chain.ends_at_branch;
-        if (ranges.empty() && is_alone) {
-            const Station& widest =
-                *std::max_element(all.begin(), all.end(), [](const Station& a, const Station& b) {
-                    return a.point.radius_mm < b.point.radius_mm;
-                });
-            return add_dot(widest.point.centre, widest.point.tangent, widest.point.radius_mm,
-                           all.back().area_mm2);
-        }
-        made_.left_out_mm2 += area_mm2(part(stations, whole.from_mm, whole.to_mm));
-        for (const Range& range : ranges) {
-            const Stations within = part(stations, range.from_mm, range.to_mm);
-            made_.left_out_mm2 -= area_mm2(within);
-            add_strand(within, chain.is_closed && range.from_mm == 0 && range.to_mm == length);
+        if (!add_range(chain, stations, all, within).empty() || !is_alone) return;
+        const Station& widest =
+            *std::max_element(all.begin(), all.end(), [](const Station& a, const Station& b) {
+                return a.point.radius_mm < b.point.radius_mm;
+            });
+        made_.left_out_mm2 -= area_mm2(part(stations, within.from_mm, within.to_mm));
+        add_dot(widest.point.centre, widest.point.tangent, widest.point.radius_mm,
+                all.back().area_mm2);
+    }
+
+    // What of a chain runs through narrow parts, on to what is covered.
+    void add_outside(const MedialChain& chain, const JointBoundary& joint,
+                     std::vector<Point2>& met) {
+        const Stations stations = stations_of(chain);
+        const std::vector<Station> all = joined(stations);
+        const std::vector<Stretch> narrow = stretches_within(all, joint.narrow);
+        if (narrow.empty()) return;
+        const std::vector<Range> outside =
+            outside_of(stretches_within(all, joint.covered), all.back().at_mm);
+        if (outside.empty()) return;
+        const Range ends{outside.front().from_mm, outside.back().to_mm};
+        const Range within = chain.is_closed ? ends : between_ends(chain, all, ends);
+        for (const Range& range : outside) {
+            const auto is_there = [&](const Stretch& stretch) {
+                return meet(stretch.range, range);
+            };
+            const Range open = common(range, within);
+            if (!(open.from_mm < open.to_mm) ||
+                std::none_of(narrow.begin(), narrow.end(), is_there))
+                continue;
+            for (const Range& wide : add_range(chain, stations, all, open))
+                for (const Stretch& stretch : narrow)
+                    if (meet(stretch.range, wide)) met.push_back(stretch.inside);
         }
     }
 
-    // Without corners, and what lies in the strands that it branches off from.
-    static Range between_ends(const MedialChain& chain, const std::vector<Station>& all) {
+    // The strands along a range. Gives where it is wide enough for them.
+    std::vector<Range> add_range(const MedialChain& chain, const Stations& stations,
+                                 const std::vector<Station>& all, const Range& range) {
+        std::vector<Range> wide = wide_ranges(all, range, chain.is_closed);
+        made_.left_out_mm2 += area_mm2(part(stations, range.from_mm, range.to_mm));
+        for (const Range& one : wide) {
+            const Stations within = part(stations, one.from_mm, one.to_mm);
+            made_.left_out_mm2 -= area_mm2(within);
+            add_strand(within,
+                       chain.is_closed && one.from_mm == 0 && one.to_mm == all.back().at_mm);
+        }
+        return wide;
+    }
+
+    // Without corners, and what lies in the strands that it branches off from. Ends of the range that are not the
+    // chain's stay.
+    static Range between_ends(const MedialChain& chain, const std::vector<Station>& all,
+                              const Range& range) {
         const auto is_steep = [](const Station& tip, const Station& next) {
             return next.point.radius_mm - tip.point.radius_mm >=
                    steep * std::abs(next.at_mm - tip.at_mm);
         };
+        const bool starts = range.from_mm == 0, ends = range.to_mm == all.back().at_mm;
         std::size_t first = 0, last = all.size() - 1;
-        if (!chain.starts_at_branch)
+        if (starts && !chain.starts_at_branch)
             while (first < last && is_steep(all[first], all[first + 1])) ++first;
-        if (!chain.ends_at_branch)
+        if (ends && !chain.ends_at_branch)
             while (first < last && is_steep(all[last], all[last - 1])) --last;
-        Range range{all[first].at_mm, all[last].at_mm};
-        if (chain.starts_at_branch) range.from_mm += all.front().point.radius_mm;
-        if (chain.ends_at_branch) range.to_mm -= all.back().point.radius_mm;
-        return range;
+        Range result{starts ? all[first].at_mm : range.from_mm,
+                     ends ? all[last].at_mm : range.to_mm};
+        if (starts && chain.starts_at_branch) result.from_mm += all.front().point.radius_mm;
+        if (ends && chain.ends_at_branch) result.to_mm -= all.back().point.radius_mm;
+        return result;
     }
 
     // Where the region is wide enough, for long enough.
@@ -211,18 +331,43 @@ private:
 
     CentreLineRequest request_;
     double allowed_mm_;
+    bool complete_ = true;
     CentreLines made_;
 };
 
+// The parts that none of the points is in.
+std::vector<Contour> others(Region narrow, std::span<const Point2> met) {
+    std::vector<Contour> result;
+    for (const std::vector<Contour>& part : parts_of(narrow)) {
+        const Boundary boundary(part);
+        if (std::none_of(met.begin(), met.end(),
+                         [&](const Point2& point) { return boundary.winding(point) > 0; }))
+            result.insert(result.end(), part.begin(), part.end());
+    }
+    return result;
+}
+
 }  // namespace
 
-CentreLines centre_lines(Region narrow, const CentreLineRequest& request) {
+CentreLines centre_lines(Region narrow, const CentreLineRequest& request,
+                         std::span<const Joint> joints) {
     const bool is_valid = request.min_width_mm > 0 && std::isfinite(request.allowed_mm) &&
                           request.max_width_mm >= request.min_width_mm &&
                           std::isfinite(request.max_width_mm);
     if (!is_valid) return {.unresolved = 1};
     if (narrow.empty()) return {};
-    return LineMaker(request).make(narrow);
+    LineMaker maker(request);
+    std::vector<Point2> met;
+    for (const Joint& joint : joints) {
+        const std::vector<Point2> points = maker.fill_joint(narrow, joint);
+        met.insert(met.end(), points.begin(), points.end());
+    }
+    if (met.empty()) {
+        maker.fill(narrow);
+    } else {
+        maker.fill(others(narrow, met));
+    }
+    return maker.made(narrow);
 }
 
 }  // namespace lyr

@@ -8,8 +8,10 @@
 //  2. Where the width changes by more than `width_step_mm`, the strand has a width for each segment, which is the mean.
 //     The width of a rib with parallel sides is constant, and its strand one line; that of concentric arcs is one arc
 //     about their centre, and of two full circles a full circle.
-//  3. Strands end half their width before the region does. Where three ribs meet, a strand runs through two of them and
-//     the third one's ends beside it. Corners are filled as far as the strand's own discs reach.
+//  3. Strands end half their width before the region does, or, at a joint, where the wall's covering does: a flat end
+//     would reach a little into the wall, a round one overlaps it by half its width besides. Where three ribs meet, a
+//     strand runs through two of them and the third one's ends beside it. Corners are filled as far as the strand's own
+//     discs reach.
 //  4. What is narrower than `min_width_mm` is left out, and what is too short for a strand; `left_out_mm2` has its
 //     area. Where the region is wider than `max_width_mm`, the strand is that wide, and `beside_mm2` is what it
 //     leaves; `corners_mm2` is what strands with round ends do not reach besides.
@@ -21,9 +23,11 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "kernel/region/region.h"
+#include "kernel/toolpath/joint.h"
 #include "kernel/toolpath/strand.h"
 
 namespace lyr {
@@ -42,6 +46,8 @@ struct CentreLines {
     std::size_t unresolved = 0;
 };
 
-CentreLines centre_lines(Region narrow, const CentreLineRequest& request);
+// The joints are those of walls(); parts of the region that none is at are as without.
+CentreLines centre_lines(Region narrow, const CentreLineRequest& request,
+                         std::span<const Joint> joints = {});
 
 }  // namespace lyr

@@ -16,8 +16,8 @@ constexpr double stick_out_share = 1;
 
 class Graph {
 public:
-    Graph(const MedialAxis& axis, double min_width_mm)
-        : edges_(axis.edges), least_mm_(min_width_mm / 2) {
+    Graph(const MedialAxis& axis, double min_width_mm, const Boundary* covered)
+        : edges_(axis.edges), least_mm_(min_width_mm / 2), covered_(covered) {
         const auto count = static_cast<End>(2 * edges_.size());
         std::vector<End> order(count);
         for (End end = 0; end < count; ++end) order[end] = end;
@@ -110,6 +110,8 @@ private:
         return result;
     }
 
+    bool is_covered(End end) const { return covered_ && covered_->winding(point(end).centre) > 0; }
+
     bool prune_round() {
         std::vector<std::vector<Branch>> branches(at_.size());  // by where they branch off
         for (End end = 0; end < node_.size(); ++end) {
@@ -117,7 +119,7 @@ private:
             Branch found = branch(end);
             const double radius = point(found.last).radius_mm;
             if (degree(found.last) < 3 || radius < least_mm_ ||
-                found.stick_out_mm >= stick_out_share * radius)
+                found.stick_out_mm >= stick_out_share * radius || is_covered(found.last))
                 continue;
             branches[node_[found.last]].push_back(std::move(found));
         }
@@ -171,6 +173,7 @@ private:
 
     const std::vector<MedialEdge>& edges_;
     double least_mm_;
+    const Boundary* covered_;
     std::vector<Node> node_;            // by end
     std::vector<std::vector<End>> at_;  // by node: the ends there that are left
     std::vector<End> link_;             // by end
@@ -178,8 +181,9 @@ private:
 
 }  // namespace
 
-std::vector<MedialChain> medial_chains(const MedialAxis& axis, double min_width_mm) {
-    Graph graph(axis, min_width_mm);
+std::vector<MedialChain> medial_chains(const MedialAxis& axis, double min_width_mm,
+                                       const Boundary* covered) {
+    Graph graph(axis, min_width_mm, covered);
     graph.prune();
     return graph.chains();
 }

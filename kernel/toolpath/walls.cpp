@@ -31,6 +31,14 @@ const double bluntest_tip_cosine = -std::cos(2 * std::asin(1 / mitre_limit));
 // share of the width.
 constexpr double cut_margin_share = 0.05;
 
+// How far around narrow parts joints reach: discs that fit where no wall does are smaller, and so are all those of what
+// is cut off them by the mitred corners of the walls' flanks.
+constexpr double joint_widths = 2;
+
+// How far within a wall's flank strands end, as a share of the wall's width: where a rib leaves it, the wall comes to a
+// corner that points into the rib, and this much of the strand makes up for the notches beside it.
+constexpr double joint_overlap_share = 0.1;
+
 class WallMaker {
 public:
     WallMaker(Region outline, const WallRequest& request)
@@ -193,6 +201,7 @@ private:
             area_mm2(outside) - area_mm2(covered) <= unseen_mm * unseen_mm)
             return;
         add_narrow(outside, covered, depth);
+        if (!wall.empty()) add_joint(outside, wall, depth);
         set_base(std::move(wall), depth);
     }
 
@@ -221,9 +230,32 @@ private:
             opened.empty() ? opened : operated(opened, rest, Operation::intersect);
         const double left_out_mm2 = area_mm2(rest) - area_mm2(narrow);
         walls_.left_out_mm2 += left_out_mm2;
-        if (depth == 0) walls_.too_thin_mm2 += left_out_mm2;
+        if (depth == 0)
+            walls_.too_thin_mm2 += left_out_mm2 > unseen_mm * unseen_mm
+                                       ? beyond_mm2(rest, covered) - beyond_mm2(narrow, covered)
+                                       : left_out_mm2;
         auto& list = depth == 0 ? walls_.thin : walls_.gaps;
         list.insert(list.end(), narrow.begin(), narrow.end());
+    }
+
+    // Without the notches beside corners of walls that point into it: strands that end there cover these.
+    double beyond_mm2(Region rest, Region covered) {
+        if (covered.empty() || rest.empty()) return area_mm2(rest);
+        const std::vector<Contour> beside =
+            offset_by(BoundedRegion(covered), request_.min_width_mm, Corner::round);
+        return area_mm2(operated(rest, beside, Operation::subtract));
+    }
+
+    // Where the narrow parts that a wall leaves of `outer` go over into it.
+    void add_joint(Region outer, Region wall, std::uint32_t depth) {
+        const std::vector<Contour>& narrow = depth == 0 ? walls_.thin : walls_.gaps;
+        if (narrow.empty()) return;
+        const std::vector<Contour> near =
+            offset_by(BoundedRegion(narrow), joint_widths * request_.width_mm, Corner::mitre);
+        const double end_mm = outwards_mm(depth) - joint_overlap_share * request_.width_mm;
+        auto& list = depth == 0 ? walls_.thin_joints : walls_.gap_joints;
+        list.push_back({operated(outer, near, Operation::intersect),
+                        offset_by(BoundedRegion(wall), end_mm, Corner::round)});
     }
 
     WallRequest request_;

@@ -9,6 +9,7 @@
 //     `thin` (no wall at all fits) or `gaps` (none beside the walls that do), as the region to be filled from flank to
 //     flank. Thin parts narrower than `min_width_mm` and gaps narrower than `min_gap_mm` are left out and their area
 //     counted; that of thin parts, where no wall is printed at all, once more by itself.
+//     Where they go over into walls there are joints, by which strands find the walls to end at.
 //  3. `inside` is what the walls leave for fill: within the inner flanks of the innermost.
 //  4. Of a count of 0 everything is inside.
 
@@ -17,6 +18,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "kernel/toolpath/joint.h"
 #include "kernel/toolpath/offset.h"
 #include "kernel/toolpath/strand.h"
 
@@ -36,6 +38,7 @@ struct Walls {
     std::vector<Strand> strands{};        // closed, the outermost first
     std::vector<std::uint32_t> depths{};  // by strand; 0: outermost
     std::vector<Contour> inside{};
+    std::vector<Joint> thin_joints{}, gap_joints{};
     std::vector<Contour> thin{}, gaps{};
     double left_out_mm2 = 0, too_thin_mm2 = 0;  // without `thin_walls`, of all that no wall fits into
     std::size_t second_method = 0, unresolved = 0;  // of the offsets and region operations

@@ -1,0 +1,262 @@
+// Where ribs and gaps go over into walls: what fills them reaches these.
+
+#include <doctest/doctest.h>
+
+#include "kernel/toolpath/boundary.h"
+#include "kernel/toolpath/centre_lines.h"
+#include "kernel/toolpath/fills.h"
+#include "kernel/toolpath/walls.h"
+
+using namespace lyr;
+using namespace lyr::testing;
+
+namespace {
+
+constexpr double allowed_mm = 0.00125;
+constexpr double width_mm = 0.45, height_mm = 0.2, min_width_mm = 0.2;
+
+const Motion motions[] = {
+    {}, {0.3, {1, 2}}, {2.1, {-40, 7}, true}, {pi / 2, {0, 0}}, {-1, {100, 80}, true}};
+
+Contours sum(const Contours& a, const Contours& b) {
+    return combined(a, b, Operation::unite, allowed_mm).contours;
+}
+
+// Along the x-axis, from its middle at x = 0, leaning by an angle.
+Contours bar(double from_mm, double to_mm, double rib_mm, double angle_rad = 0) {
+    return lyr::testing::moved(Contours{rectangle(from_mm, -rib_mm / 2, to_mm, rib_mm / 2)},
+                               Motion{angle_rad, {0, 0}});
+}
+
+// To the left of the y-axis.
+Contours plate() {
+    return {rectangle(-10, -10, 0, 10)};
+}
+
+struct Printed {
+    Walls made;
+    std::vector<Strand> thin;
+};
+
+Printed printed(const Contours& region) {
+    Printed result{walls(region, {.count = 2,
+                                  .width_mm = width_mm,
+                                  .height_mm = height_mm,
+                                  .min_width_mm = min_width_mm,
+                                  .allowed_mm = allowed_mm}),
+                   {}};
+    CHECK(result.made.unresolved == 0);
+    const CentreLines lines =
+        centre_lines(result.made.thin,
+                     {.min_width_mm = min_width_mm, .max_width_mm = 0.9, .allowed_mm = allowed_mm},
+                     result.made.thin_joints);
+    CHECK(lines.unresolved == 0);
+    result.thin = lines.strands;
+    return result;
+}
+
+// The bodies' outer walls, without those that fit where ribs meet.
+Contours wall_of(const Walls& made) {
+    constexpr double least_mm = 10;
+    Contours wall;
+    for (std::size_t i = 0; i < made.strands.size(); ++i)
+        if (made.depths[i] == 0 && length_mm(made.strands[i].path) > least_mm)
+            wall.push_back(made.strands[i].path);
+    return wall;
+}
+
+std::pair<Point2, Point2> ends_of(const Strand& strand) {
+    const Path& path = std::get<Path>(strand.path);
+    return {path.start, path.segments.back().end};
+}
+
+// How far within a wall's flank strands end.
+constexpr double overlap_mm = 0.1 * width_mm;
+
+// How many ends lie just within the flank of a wall, and how many half a width before the outline.
+struct Ends {
+    int joined = 0, free = 0;
+};
+
+Ends ends_in(const Contours& region, const Printed& print) {
+    const Contours wall = wall_of(print.made);
+    const Boundary middle(wall), outline(region);
+    Ends ends;
+    constexpr double within_mm = 0.003;
+    for (const Strand& strand : print.thin) {
+        const auto [first, last] = ends_of(strand);
+        for (const Point2& end : {first, last}) {
+            if (std::abs(middle.distance_mm(end, 1) - (width_mm / 2 - overlap_mm)) <= within_mm) {
+                ++ends.joined;
+                continue;
+            }
+            // Ahead of a free end there is nothing of the part.
+            const Point2& other = end == first ? last : first;
+            const Point2 ahead =
+                end + (strand.width_mm / 2 + within_mm) * (end - other).normalized();
+            ends.free += outline.winding(ahead) == 0;
+        }
+    }
+    return ends;
+}
+
+// What walls, the strands of thin parts and what is inside cover of a region around the origin, and by how much discs
+// of those strands stick out of it.
+void check_covered(const Contours& region, const Printed& print) {
+    const Boundary outline(region), inside(print.made.inside);
+    std::vector<std::pair<PrintedLine, double>> lines;
+    double most_outside_mm = -1;
+    const auto add = [&](const Strand& strand, bool is_thin) {
+        Fill fill;
+        fill.strands = {strand};
+        std::size_t i = 0;
+        for (const PrintedLine& line : lines_of(fill)) {
+            const double width = strand.widths_mm.empty() ? strand.width_mm : strand.widths_mm[i++];
+            lines.push_back({line, width});
+            for (int k = 0; is_thin && k <= 8; ++k) {
+                const Point2 point = point_at(line.start, line.segment, k / 8.0);
+                most_outside_mm =
+                    std::max(most_outside_mm, width / 2 - outline.distance_mm(point, 1));
+                CHECK(outline.winding(point) == 1);
+            }
+        }
+    };
+    for (const Strand& strand : print.made.strands) add(strand, false);
+    for (const Strand& strand : print.thin) add(strand, true);
+    CHECK(most_outside_mm <= allowed_mm + width_step_mm / 2);
+    constexpr double grid_mm = 0.04;
+    const auto box = box_of(region);
+    double all = 0, covered = 0;
+    for (double y = box.min().y() + grid_mm / 3; y < box.max().y(); y += grid_mm)
+        for (double x = box.min().x() + grid_mm / 3; x < box.max().x(); x += grid_mm) {
+            const Point2 point(x, y);
+            if (point.norm() > 1 || outline.winding(point) != 1) continue;
+            ++all;
+            covered += inside.winding(point) == 1 ||
+                       std::any_of(lines.begin(), lines.end(), [&](const auto& line) {
+                           return distance_mm(line.first.start, line.first.segment, point) <=
+                                  line.second / 2 + allowed_mm;
+                       });
+        }
+    CHECK(covered / all >= 0.99);
+}
+
+// Of all thin strands, with flat ends.
+double flat_mm2(const std::vector<Strand>& strands) {
+    double area = 0;
+    for (const Strand& strand : strands) area += length_mm(strand.path) * strand.width_mm;
+    return area;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "joints: a thin rib on a plate is one strand from the plate's wall to half a width before its "
+    "tip") {
+    for (const double rib_mm : {0.25, 0.3, 0.4, 0.5, 0.55, 0.6, 0.65, 0.7})
+        for (const double lean_rad : {0.0, 0.4, -0.7}) {
+            CAPTURE(rib_mm);
+            CAPTURE(lean_rad);
+            for (const Motion& motion : motions) {
+                const Contours region =
+                    lyr::testing::moved(sum(plate(), bar(-2, 8, rib_mm, lean_rad)), motion);
+                const Printed print = printed(region);
+                REQUIRE(print.thin.size() == 1);
+                CHECK(std::get<Path>(print.thin[0].path).segments.size() <= 2);
+                CHECK(print.thin[0].width_mm == doctest::Approx(rib_mm).epsilon(0.01));
+                const Ends ends = ends_in(region, print);
+                CHECK(ends.joined == 1);
+                CHECK(ends.free == 1);
+                CHECK(print.made.too_thin_mm2 < 0.0625);
+            }
+        }
+}
+
+TEST_CASE("joints: a plate with a thin rib is covered up to where they meet") {
+    for (const double rib_mm : {0.3, 0.5, 0.6})
+        for (const double lean_rad : {0.0, 0.5}) {
+            CAPTURE(rib_mm);
+            CAPTURE(lean_rad);
+            const Contours body{rectangle(-3, -2, 0, 2)};
+            const Contours region = sum(body, bar(-1, 2.5, rib_mm, lean_rad));
+            check_covered(region, printed(region));
+        }
+}
+
+TEST_CASE("joints: a thin rib between two bodies reaches both walls") {
+    const Contours bodies{rectangle(-4, -4, 0, 4), rectangle(3, -4, 7, 4)};
+    for (const double rib_mm : {0.25, 0.4, 0.6, 0.7})
+        for (const Motion& motion : motions) {
+            CAPTURE(rib_mm);
+            const Contours region = lyr::testing::moved(sum(bodies, bar(-1, 4, rib_mm)), motion);
+            const Printed print = printed(region);
+            REQUIRE(print.thin.size() == 1);
+            CHECK(ends_in(region, print).joined == 2);
+            // It is no more than what the walls leave of the rib, and their corners that point into it.
+            CHECK(flat_mm2(print.thin) <= (3 + overlap_mm) * rib_mm);
+            CHECK(flat_mm2(print.thin) >= (3 - 2 * rib_mm - 0.1) * rib_mm);
+            CHECK(std::get<Path>(print.thin[0].path).segments.size() == 1);
+        }
+}
+
+TEST_CASE("joints: thin ribs that meet in a T or a cross between bodies reach their walls") {
+    const Contours frame{rectangle(-6, -6, 6, 6), reversed(Contour(rectangle(-4, -4, 4, 4)))};
+    for (const double rib_mm : {0.3, 0.4, 0.5, 0.65})
+        for (const bool crossed : {false, true})
+            for (const Motion& motion : motions) {
+                CAPTURE(rib_mm);
+                CAPTURE(crossed);
+                const Contours second = bar(crossed ? -5 : 0, 5, rib_mm, pi / 2);
+                const Contours region =
+                    lyr::testing::moved(sum(frame, sum(bar(-5, 5, rib_mm), second)), motion);
+                const Printed print = printed(region);
+                const int ribs = crossed ? 4 : 3;
+                CHECK(print.thin.size() <= static_cast<std::size_t>(ribs));
+                CHECK(ends_in(region, print).joined == ribs);
+                CHECK(flat_mm2(print.thin) <= (4 + overlap_mm) * ribs * rib_mm);
+            }
+}
+
+TEST_CASE("joints: a gap between walls that widens is filled up to the walls inside of it") {
+    // Between the walls of the neck there is a gap, in the bodies there are walls.
+    const double spacing_mm = width_mm - height_mm * (1 - pi / 4);
+    const Contours bodies{rectangle(-6, -4, 0, 4), rectangle(5, -4, 11, 4)};
+    for (const double gap_mm : {0.15, 0.3, 0.5})
+        for (const Motion& motion : motions) {
+            CAPTURE(gap_mm);
+            const Contours region = lyr::testing::moved(
+                sum(bodies, bar(-1, 6, width_mm + spacing_mm + gap_mm)), motion);
+            const Printed print = printed(region);
+            CHECK(print.thin.empty());
+            REQUIRE(!print.made.gaps.empty());
+            const CentreLines lines =
+                centre_lines(print.made.gaps,
+                             {.min_width_mm = 0.1, .max_width_mm = 0.9, .allowed_mm = allowed_mm},
+                             print.made.gap_joints);
+            REQUIRE(lines.strands.size() == 1);
+            Contours inner;
+            for (std::size_t i = 0; i < print.made.strands.size(); ++i)
+                if (print.made.depths[i] == 1) inner.push_back(print.made.strands[i].path);
+            REQUIRE(inner.size() == 2);
+            const auto [first, last] = ends_of(lines.strands[0]);
+            for (const Point2& end : {first, last})
+                CHECK(Boundary(inner).distance_mm(end, 1) ==
+                      doctest::Approx(spacing_mm / 2 - overlap_mm).epsilon(0.02));
+        }
+}
+
+TEST_CASE("joints: ribs hardly longer than wide are joined to the body that they are on") {
+    for (const double rib_mm : {0.25, 0.3, 0.4}) {
+        CAPTURE(rib_mm);
+        Contours comb = plate();
+        constexpr int teeth = 7;
+        for (int i = 0; i < teeth; ++i)
+            comb = sum(comb, lyr::testing::moved(bar(-1, 0.7, rib_mm), {0, {0, 2.5 * i - 8}}));
+        for (const Motion& motion : motions) {
+            const Contours region = lyr::testing::moved(comb, motion);
+            const Printed print = printed(region);
+            CHECK(print.thin.size() == teeth);
+            CHECK(ends_in(region, print).joined == teeth);
+        }
+    }
+}
