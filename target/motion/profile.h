@@ -22,6 +22,7 @@ struct Phase {
     double time_s = 0;       // of its begin, since the begin of the move
     double speed_mm_s = 0;   // at its begin
     double acceleration_mm_s2 = 0;
+    double jerk_mm_s3 = 0;
 };
 
 struct Profile {
