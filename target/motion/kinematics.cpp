@@ -48,8 +48,8 @@ Status check(const Kinematics& kinematics) {
 }
 
 const std::array<double, axis_count>& steps_per_mm(const Kinematics& kinematics) {
-    return std::visit([](const auto& kind) -> const auto& { return kind.steps_per_mm; },
-                      kinematics);
+    return std::visit(
+        [](const auto& kind) -> const auto& { return kind.steps_per_mm; }, kinematics);
 }
 
 AxisShares axis_shares(const LinearKinematics& kinematics, std::size_t motor) {
@@ -66,8 +66,8 @@ double carriage_mm(const Delta::Tower& tower, const Point& head) {
 }
 
 MotorPaths motor_paths(const LinearKinematics& kinematics, const Path& path, const Point& origin) {
-    const auto& steps =
-        std::visit([](const auto& kind) -> const auto& { return kind.steps_per_mm; }, kinematics);
+    const auto& steps = std::visit(
+        [](const auto& kind) -> const auto& { return kind.steps_per_mm; }, kinematics);
     const double length_mm = length_of(path);
     const auto* arc = std::get_if<Arc>(&path);
     MotorPaths motors;

@@ -7,6 +7,7 @@ namespace lyr::motion {
 namespace {
 
 constexpr double ns_per_s = 1e9;
+constexpr std::int64_t forever_ns = std::numeric_limits<std::int64_t>::max();
 // What is left of a phase when it is as good as over: the rounding of a day in seconds, and a thousandth
 // of what a step's time is rounded to.
 constexpr double instant_s = 1e-12;
@@ -59,13 +60,13 @@ std::int64_t MotorFunction::behind_ns() const {
     return behind_ns;
 }
 
-Known MotorFunction::begin_piece(const MoveWindow& window, bool plan_is_whole,
-                                 const Instant& begin) {
-    if (window.end() == 0) return plan_is_whole ? Known::rests_forever : Known::nothing_yet;
+Known MotorFunction::begin_piece(const MoveWindow& window, const Instant& begin) {
+    if (window.end() == 0)
+        return window.rests_until_ns() == forever_ns ? Known::rests_forever : Known::nothing_yet;
     for (Smooth& smooth : smooth_) smooth.clear();
     duration_s_ = std::numeric_limits<double>::infinity();
     for (Cursor& cursor : cursors_)
-        if (!add(cursor, window, plan_is_whole, begin)) return Known::nothing_yet;
+        if (!add(cursor, window, begin)) return Known::nothing_yet;
     if (duration_s_ == std::numeric_limits<double>::infinity()) {
         duration_s_ = 0;
         return Known::rests_forever;
@@ -74,8 +75,7 @@ Known MotorFunction::begin_piece(const MoveWindow& window, bool plan_is_whole,
     return Known::piece;
 }
 
-bool MotorFunction::add(Cursor& cursor, const MoveWindow& window, bool plan_is_whole,
-                        const Instant& begin) {
+bool MotorFunction::add(Cursor& cursor, const MoveWindow& window, const Instant& begin) {
     const Instant here{begin.ns + cursor.tap.offset_ns, begin.part_ns};
     for (;;) {
         const ChannelMove& move = window.at(cursor.move);
@@ -91,12 +91,14 @@ bool MotorFunction::add(Cursor& cursor, const MoveWindow& window, bool plan_is_w
             return true;
         }
         if (cursor.move + 1 == window.end()) {
+            const std::int64_t until_ns = window.rests_until_ns();
+            if (until_ns <= here.ns) return false;
             add_rest(cursor.tap, move.to);
-            return plan_is_whole;
+            if (until_ns != forever_ns) end_no_later_than(Instant{until_ns, 0}.seconds_since(here));
+            return true;
         }
         const ChannelMove& next = window.at(cursor.move + 1);
-        const double to_next_s =
-            Instant{next.start_ns, next.start_part_ns}.seconds_since(here);
+        const double to_next_s = Instant{next.start_ns, next.start_part_ns}.seconds_since(here);
         if (to_next_s > instant_s) {
             add_rest(cursor.tap, move.to);
             end_no_later_than(to_next_s);
@@ -124,7 +126,8 @@ void MotorFunction::add_moving(Cursor& cursor, const ChannelMove& move, double s
         (is_last ? move.profile.duration_s : phases[cursor.phase + 1].time_s) - since_s;
     end_no_later_than(left_s);
     const double t = since_s - phase.time_s;
-    const double speed = phase.speed_mm_s + t * (phase.acceleration_mm_s2 + t * phase.jerk_mm_s3 / 2);
+    const double speed =
+        phase.speed_mm_s + t * (phase.acceleration_mm_s2 + t * phase.jerk_mm_s3 / 2);
     const double half_acceleration = (phase.acceleration_mm_s2 + t * phase.jerk_mm_s3) / 2;
     const double sixth_jerk = phase.jerk_mm_s3 / 6;
     const double distance_mm =
@@ -184,8 +187,8 @@ Sample MotorFunction::at(double time_s) const {
                               (tower_.arm_mm - off_mm) * (tower_.arm_mm + off_mm));
     const double g = std::sqrt(q);
     const double half_q1 = -(px * x.speed + py * y.speed);
-    const double half_q2 = -(x.speed * x.speed + y.speed * y.speed + px * x.acceleration +
-                             py * y.acceleration);
+    const double half_q2 =
+        -(x.speed * x.speed + y.speed * y.speed + px * x.acceleration + py * y.acceleration);
     const double g1 = half_q1 / g;
     return {steps_per_mm_ * (z.position + g - start_), steps_per_mm_ * (z.speed + g1),
             steps_per_mm_ * (z.acceleration + (half_q2 - g1 * g1) / g)};

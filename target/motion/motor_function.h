@@ -44,7 +44,7 @@ public:
                                   double start_mm);
 
     // Moves on to the piece that begins at `begin`, which must be where the last one ended.
-    Known begin_piece(const MoveWindow& window, bool plan_is_whole, const Instant& begin);
+    Known begin_piece(const MoveWindow& window, const Instant& begin);
     double duration_s() const { return duration_s_; }
     // Since the begin of the piece.
     Sample at(double time_s) const;
@@ -67,7 +67,7 @@ private:
 
     MotorFunction(const Taps& taps, bool is_carriage);
     // False: the plan does not reach so far yet.
-    bool add(Cursor& cursor, const MoveWindow& window, bool plan_is_whole, const Instant& begin);
+    bool add(Cursor& cursor, const MoveWindow& window, const Instant& begin);
     void add_rest(const Tap& tap, const ChannelValues& at);
     void add_moving(Cursor& cursor, const ChannelMove& move, double since_s);
     void add_turn(const Tap& tap, const ChannelMove& move, double distance_mm,

@@ -12,6 +12,7 @@ void MoveWindow::push(const PlannedMove& planned) {
     if (size_ == ring_.size()) grow();
     ChannelMove& move = ring_[end() & (ring_.size() - 1)];
     ++size_;
+    rests_until_ns_ = std::numeric_limits<std::int64_t>::min();
     const Path& path = planned.path;
     const double length_mm = planned.profile.length_mm, advance_mm = advance_of(path);
     const Point &from = start_of(path), &to = end_of(path);

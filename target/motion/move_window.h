@@ -6,6 +6,7 @@
 
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "target/motion/planner.h"
@@ -32,14 +33,15 @@ public:
     MoveWindow() : ring_(expected) {}
 
     void push(const PlannedMove& planned);
+    // After the last move so far the plan rests until then.
+    void rest_until(std::int64_t plan_ns) { rests_until_ns_ = plan_ns; }
+    std::int64_t rests_until_ns() const { return rests_until_ns_; }
     // Moves before this one are not looked at any more.
     void drop_before(std::uint64_t number);
 
     std::uint64_t first() const { return first_; }
     std::uint64_t end() const { return first_ + size_; }
-    const ChannelMove& at(std::uint64_t number) const {
-        return ring_[number & (ring_.size() - 1)];
-    }
+    const ChannelMove& at(std::uint64_t number) const { return ring_[number & (ring_.size() - 1)]; }
 
 private:
     void grow();
@@ -51,6 +53,7 @@ private:
     // a step.
     double fed_mm_ = 0, fed_error_mm_ = 0;
     double pressed_mm_ = 0;
+    std::int64_t rests_until_ns_ = std::numeric_limits<std::int64_t>::min();
 };
 
 }  // namespace lyr::motion

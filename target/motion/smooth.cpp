@@ -7,8 +7,24 @@ namespace {
 
 // Factors of the series of sin(a) / a and (1 - cos(a)) / a^2 by a^2. For |a| <= 0.8 the first ones left
 // out, 0.8^18 / 19! and 0.8^18 / 20!, are below the rounding of the sum.
-constexpr std::array<double, 9> sine_series{1.0 / 1., -1.0 / 6., 1.0 / 120., -1.0 / 5040., 1.0 / 362880., -1.0 / 39916800., 1.0 / 6227020800., -1.0 / 1307674368000., 1.0 / 355687428096000.};
-constexpr std::array<double, 9> versine_series{1.0 / 2., -1.0 / 24., 1.0 / 720., -1.0 / 40320., 1.0 / 3628800., -1.0 / 479001600., 1.0 / 87178291200., -1.0 / 20922789888000., 1.0 / 6402373705728000.};
+constexpr std::array<double, 9> sine_series{1.0 / 1.,
+                                            -1.0 / 6.,
+                                            1.0 / 120.,
+                                            -1.0 / 5040.,
+                                            1.0 / 362880.,
+                                            -1.0 / 39916800.,
+                                            1.0 / 6227020800.,
+                                            -1.0 / 1307674368000.,
+                                            1.0 / 355687428096000.};
+constexpr std::array<double, 9> versine_series{1.0 / 2.,
+                                               -1.0 / 24.,
+                                               1.0 / 720.,
+                                               -1.0 / 40320.,
+                                               1.0 / 3628800.,
+                                               -1.0 / 479001600.,
+                                               1.0 / 87178291200.,
+                                               -1.0 / 20922789888000.,
+                                               1.0 / 6402373705728000.};
 
 double sum(const std::array<double, 9>& series, double q) {
     double value = series.back();
@@ -44,11 +60,10 @@ Bounds Smooth::bounds(double time) const {
         const double size = std::hypot(turn.ahead, turn.inward);
         const double half = std::abs(turn.angle.half_acceleration);
         const double sixth = std::abs(turn.angle.sixth_jerk);
-        const double end_rate =
-            turn.angle.rate +
-            time * (2 * turn.angle.half_acceleration + time * 3 * turn.angle.sixth_jerk);
-        const double rate = std::max(std::abs(turn.angle.rate), std::abs(end_rate)) +
-                            time * time * 3 * sixth;
+        const double end_rate = turn.angle.rate + time * (2 * turn.angle.half_acceleration +
+                                                          time * 3 * turn.angle.sixth_jerk);
+        const double rate =
+            std::max(std::abs(turn.angle.rate), std::abs(end_rate)) + time * time * 3 * sixth;
         const double acceleration = 2 * half + 6 * sixth * time;
         bounds.speed += size * rate;
         bounds.acceleration += size * (rate * rate + acceleration);

@@ -44,11 +44,11 @@ private:
 
     std::int64_t count_ = 0;
     double duration_s_ = 0, least_jerk_ = 0, most_jerk_ = 0, jerk_ = 0;
-    int direction_ = 0;                // in the stretch; 0: stands still
-    double low_s_ = 0, high_s_ = 0;    // of the stretch
-    double end_ = 0;                   // its position there
+    int direction_ = 0;                 // in the stretch; 0: stands still
+    double low_s_ = 0, high_s_ = 0;     // of the stretch
+    double end_ = 0;                    // its position there
     double seen_s_ = 0, passed_s_ = 0;  // of the last point looked at, of the last step
-    Sample seen_, last_;               // there, and at the end of the piece
+    Sample seen_, last_;                // there, and at the end of the piece
     Sample high_;
 };
 

@@ -81,9 +81,11 @@ TimedGenerator::TimedGenerator(const Kinematics& kinematics, const Point& origin
                                const Shaping& shaping) {
     for (std::size_t motor = 0; motor < extruder_motor; ++motor)
         motors_.push_back(
-            {std::visit([&](const auto& machine) {
-                 return function_of(machine, motor, origin, shaping);
-             }, kinematics), {}, {}});
+            {std::visit(
+                 [&](const auto& machine) { return function_of(machine, motor, origin, shaping); },
+                 kinematics),
+             {},
+             {}});
     motors_.push_back({extruder_of(steps_per_mm(kinematics)[axis_e], shaping), {}, {}});
     for (const Motor& motor : motors_) {
         lead_ns_ = std::max(lead_ns_, motor.function.ahead_ns());
@@ -99,12 +101,20 @@ void TimedGenerator::start(const PlannedMove& planned) {
     for (const Motor& motor : motors_) oldest = std::min(oldest, motor.function.oldest_move());
     window_.drop_before(oldest);
     window_.push(planned);
-    for (std::size_t motor = 0; motor < motor_count; ++motor)
-        if (waits_[motor]) find(motor);
+    find_waiting();
+}
+
+void TimedGenerator::rest_until(std::int64_t plan_ns) {
+    window_.rest_until(plan_ns);
+    find_waiting();
 }
 
 void TimedGenerator::finish() {
-    whole_ = true;
+    window_.rest_until(never_ns);
+    find_waiting();
+}
+
+void TimedGenerator::find_waiting() {
     for (std::size_t motor = 0; motor < motor_count; ++motor)
         if (waits_[motor]) find(motor);
 }
@@ -131,7 +141,7 @@ void TimedGenerator::find(std::size_t index) {
 
 bool TimedGenerator::begin_piece(std::size_t index) {
     Motor& motor = motors_[index];
-    switch (motor.function.begin_piece(window_, whole_, motor.begin)) {
+    switch (motor.function.begin_piece(window_, motor.begin)) {
         case Known::piece:
             motor.walk.start(motor.function, counts_[index]);
             motor.state = Motor::State::walking;

@@ -34,6 +34,8 @@ public:
 
     // The next move of the plan.
     void start(const PlannedMove& planned);
+    // The plan rests until then after the moves so far: the steps that lag behind come out.
+    void rest_until(std::int64_t plan_ns);
     // There are no more moves.
     void finish();
     // Writes the next events and returns how many; fewer than asked for: more of the plan is needed, or
@@ -53,6 +55,7 @@ private:
     };
 
     void find(std::size_t motor);
+    void find_waiting();
     bool begin_piece(std::size_t motor);
     void take(std::size_t motor, StepEvent& event);
 
@@ -60,7 +63,6 @@ private:
     std::array<std::int64_t, motor_count> next_ns_;  // of a motor's next step, in the plan's time
     std::array<bool, motor_count> waits_{};          // nothing is known of it from then on
     MoveWindow window_;
-    bool whole_ = false;
     std::int64_t lead_ns_ = 0, behind_ns_ = 0;
     StepCounts counts_{};
     std::int64_t last_ns_ = std::numeric_limits<std::int64_t>::min();

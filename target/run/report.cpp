@@ -137,8 +137,8 @@ double SimulationReport::worst_steps() const {
 
 bool SimulationReport::within_limits() const {
     for (std::size_t i = 0; i < axis_count; ++i) {
-        const config::Axis& axis = printer.axes[i];
-        const double in_a_ns = axis.max_speed_mm_s * axis.steps_per_mm / ns_per_s;
+        const double in_a_ns =
+            config::fastest_motor_mm_s(printer, i) * printer.axes[i].steps_per_mm / ns_per_s;
         const double limit = half_step + in_a_ns + rounding_steps;
         if (!(path.steps[i] <= limit) || !(planned_steps[i] <= limit)) return false;
     }

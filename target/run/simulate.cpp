@@ -8,8 +8,8 @@
 #include "target/gpio/tracing_chip.h"
 #include "target/run/event_stream.h"
 #include "target/run/executor.h"
-#include "target/run/plan_check.h"
 #include "target/run/print.h"
+#include "target/run/step_checks.h"
 
 namespace lyr::run {
 namespace {
@@ -18,16 +18,6 @@ constexpr double ns_per_s = 1e9;
 
 // Progress and stop are asked for after so many batches of events.
 constexpr std::uint64_t batches_between_questions = 64;
-
-AxisValues steps_per_mm(const config::Printer& printer) {
-    AxisValues values{};
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] = printer.axes[i].steps_per_mm;
-    return values;
-}
-
-AxisValues start_mm(const config::Printer& printer) {
-    return {printer.start_mm[0], printer.start_mm[1], printer.start_mm[2], 0};
-}
 
 Diagnostic stopped() {
     return {Severity::error, ExitStatus::stopped, "the simulation was stopped on request", {}};
@@ -42,13 +32,8 @@ public:
           inspection_(inspection),
           stream_(std::move(stream)),
           file_(std::move(file)),
-          path_check_(steps_per_mm(job.printer), start_mm(job.printer),
-                      [this](PathCurve& curve) { return file_.next(curve); }),
-          plan_check_(steps_per_mm(job.printer), start_mm(job.printer)),
-          decoder_([this](const DecodedStep& step) {
-              path_check_.step(step);
-              plan_check_.step(step);
-          }),
+          checks_(job.printer, [this](PathCurve& curve) { return file_.next(curve); }),
+          decoder_([this](const DecodedStep& step) { checks_.step(step); }),
           layout_(line_layout(job.printer)),
           mock_(layout_.names.size(), clock_,
                 [this](const gpio::LineWrite& write) { decoder_.write(write); }) {}
@@ -65,8 +50,7 @@ private:
     const Inspection& inspection_;
     EventStream stream_;
     FilePath file_;
-    PathCheck path_check_;
-    PlanCheck plan_check_;
+    StepChecks checks_;
     PulseDecoder decoder_;
     LineLayout layout_;
     gpio::VirtualClock clock_;
@@ -83,9 +67,7 @@ Status Simulation::run(ReplaceFile* trace) {
     Status pumped = pump(executor, trace);
     print_time_s_ = static_cast<double>(executor.time_ns()) / ns_per_s;
     if (!pumped) return pumped;
-    path_check_.finish(decoder_.positions());
-    plan_check_.finish(decoder_.positions());
-    if (!path_check_.status()) return path_check_.status();
+    if (Status followed = checks_.finish(decoder_.positions()); !followed) return followed;
     Status released = chip.release();
     if (tracing) tracing->finish();
     return released;
@@ -97,7 +79,7 @@ Status Simulation::pump(Executor& executor, ReplaceFile* trace) {
         events.clear();
         const Result<bool> more = stream_.next(events);
         if (!more) return more.error();
-        plan_check_.expect(stream_.steps().moves(), stream_.schedule().take_shifts());
+        checks_.expect(stream_.steps().moves(), stream_.schedule().take_shifts());
         const Result<bool> executed = executor.execute(events);
         if (!executed) return executed.error();
         if (!*more) return Done{};
@@ -125,8 +107,8 @@ SimulationReport Simulation::report() const {
     for (std::size_t i = 0; i < report.pulses.size(); ++i) report.pulses[i] = decoder_.figures(i);
     report.positions = decoder_.positions();
     report.writes = decoder_.writes();
-    report.path = path_check_.deviation();
-    report.planned_steps = plan_check_.deviation_steps();
+    report.path = checks_.off_file();
+    report.planned_steps = checks_.off_plan();
     return report;
 }
 

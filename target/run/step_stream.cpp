@@ -11,13 +11,6 @@ namespace {
 
 constexpr std::size_t batch_events = 2048;
 
-motion::Kinematics kinematics_of(const config::Printer& printer) {
-    motion::Cartesian cartesian;
-    for (std::size_t i = 0; i < cartesian.steps_per_mm.size(); ++i)
-        cartesian.steps_per_mm[i] = printer.axes[i].steps_per_mm;
-    return cartesian;
-}
-
 void append_steps(const motion::StepEvent& event, std::vector<Step>& steps) {
     for (unsigned motors = event.motors; motors; motors &= motors - 1) {
         const int motor = std::countr_zero(motors);
@@ -34,17 +27,16 @@ Result<StepStream> StepStream::open(const std::string& path, const config::Print
     if (!reader) return reader.error();
     Result<motion::Planner> planner = motion::Planner::create(motion_limits(printer));
     if (!planner) return planner.error();
-    const motion::Point origin{printer.start_mm[0], printer.start_mm[1], printer.start_mm[2]};
     return StepStream(path, Interpreter(std::move(*reader), printer, filament_diameter_mm),
-                      std::move(*planner), motion::StepGenerator(kinematics_of(printer), origin));
+                      std::move(*planner), MotorSteps(printer));
 }
 
 StepStream::StepStream(std::string path, Interpreter interpreter, motion::Planner planner,
-                       motion::StepGenerator generator)
+                       MotorSteps generator)
     : path_(std::move(path)),
       interpreter_(std::move(interpreter)),
       planner_(std::move(planner)),
-      generator_(generator),
+      generator_(std::move(generator)),
       events_(batch_events) {}
 
 Result<bool> StepStream::next(std::vector<Step>& steps) {
@@ -60,7 +52,7 @@ Result<bool> StepStream::next(std::vector<Step>& steps) {
         while (!planner_.pop(move)) {
             if (read_all_) {
                 moves_.pop_back();
-                return false;
+                return finish(steps);
             }
             if (const Status planned = plan(); !planned) return planned.error();
         }
@@ -68,6 +60,15 @@ Result<bool> StepStream::next(std::vector<Step>& steps) {
         generator_.start(move);
     }
     return true;
+}
+
+// The steps that come after the last move; false when there are no more.
+bool StepStream::finish(std::vector<Step>& steps) {
+    generator_.finish();
+    const std::size_t count = generator_.next(events_);
+    for (const motion::StepEvent& event : std::span(events_).first(count))
+        append_steps(event, steps);
+    return count == events_.size();
 }
 
 // Feeds the planner until it is full or the file ends.

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "target/motion/planner.h"
-#include "target/motion/step_generator.h"
 #include "target/run/interpreter.h"
+#include "target/run/motor_steps.h"
 #include "target/run/pulse_schedule.h"
 
 namespace lyr::run {
@@ -28,21 +28,22 @@ public:
     Result<bool> next(std::vector<Step>& steps);
 
     const std::vector<motion::PlannedMove>& moves() const { return moves_; }
-    // Where the move begun last ends, or a rest after it.
-    std::int64_t time_ns() const { return planner_.time_ns(); }
+    // Where the move begun last ends, or a rest after it; the last steps may come so late.
+    std::int64_t time_ns() const { return planner_.time_ns() + generator_.tail_ns(); }
     // Of the move begun last, from 1; 0 before the first.
     std::uint32_t layer() const { return layer_; }
 
 private:
     StepStream(std::string path, Interpreter interpreter, motion::Planner planner,
-               motion::StepGenerator generator);
+               MotorSteps generator);
 
     Status plan();
+    bool finish(std::vector<Step>& steps);
 
     std::string path_;  // for messages
     Interpreter interpreter_;
     motion::Planner planner_;
-    motion::StepGenerator generator_;
+    MotorSteps generator_;
     std::optional<Instruction> held_;  // for when the planner has room again
     bool read_all_ = false;
     std::vector<motion::PlannedMove> moves_;

@@ -132,9 +132,8 @@ private:
         while (i > 0 && profile.phases[i].time_s > time_s) --i;
         const Phase& phase = profile.phases[i];
         const Real t = time_s - phase.time_s;
-        return phase.distance_mm + 
-               t * (phase.speed_mm_s +
-                    t * (phase.acceleration_mm_s2 / 2 + t * phase.jerk_mm_s3 / 6));
+        return phase.distance_mm + t * (phase.speed_mm_s + t * (phase.acceleration_mm_s2 / 2 +
+                                                                t * phase.jerk_mm_s3 / 6));
     }
     static AxisReals at(const Line& line, Real share) {
         const auto between = [share](Real from, Real to) { return from + share * (to - from); };

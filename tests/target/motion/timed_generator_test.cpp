@@ -46,8 +46,9 @@ Job near_middle(unsigned seed, std::size_t count, double size_mm) {
 
 Real check_steps(const TimedRun& timed) {
     const std::vector<StepEvent>& events = timed.run.events;
-    CHECK(std::is_sorted(events.begin(), events.end(),
-                         [](const StepEvent& a, const StepEvent& b) { return a.time_ns < b.time_ns; }));
+    CHECK(std::is_sorted(events.begin(), events.end(), [](const StepEvent& a, const StepEvent& b) {
+        return a.time_ns < b.time_ns;
+    }));
     Real worst_ns = 0;
     for (std::size_t motor = 0; motor < motor_count; ++motor) {
         const Errors errors = errors_of(timed, motor);
@@ -82,7 +83,8 @@ TEST_CASE("timed 1, 2: crossed belts and a delta, on lines and arcs of all sizes
     for (unsigned seed = 0; seed < 3; ++seed)
         for (const double size_mm : {0.02, 1.0, 12.0}) {
             const Job job = near_middle(seed, size_mm > 10 ? 8 : 80, size_mm);
-            worst_ns = std::max(worst_ns, check_steps(timed_run(job, CoreXy{{80, 80, 400, 415}}, {})));
+            worst_ns =
+                std::max(worst_ns, check_steps(timed_run(job, CoreXy{{80, 80, 400, 415}}, {})));
             worst_ns = std::max(worst_ns, check_steps(timed_run(job, delta_of(100), {})));
         }
     MESSAGE("largest error of a step's time: ", static_cast<double>(worst_ns), " ns");

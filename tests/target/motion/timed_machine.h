@@ -94,8 +94,8 @@ private:
     }
     Real planned(std::size_t channel, Real time_ns) const {
         const auto after = std::upper_bound(starts_ns_.begin(), starts_ns_.end(), time_ns);
-        const auto index = static_cast<std::size_t>(
-            std::max<std::ptrdiff_t>(0, after - starts_ns_.begin() - 1));
+        const auto index =
+            static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, after - starts_ns_.begin() - 1));
         const PlannedMove& move = timed_.run.plan[index];
         const Real time_s = (time_ns - starts_ns_[index]) / 1e9L;
         if (channel < axis_e) return ideal_.in_move(index, time_s)[channel];
@@ -109,7 +109,8 @@ private:
             return motor == 0 ? at[0] + at[1] : motor == 1 ? at[0] - at[1] : at[2];
         const Delta::Tower& tower = std::get<Delta>(timed_.kinematics).towers[motor];
         const Real dx = at[0] - tower.x_mm, dy = at[1] - tower.y_mm;
-        return at[2] + std::sqrt(static_cast<Real>(tower.arm_mm) * tower.arm_mm - dx * dx - dy * dy);
+        return at[2] +
+               std::sqrt(static_cast<Real>(tower.arm_mm) * tower.arm_mm - dx * dx - dy * dy);
     }
 
     const TimedRun& timed_;
@@ -147,7 +148,8 @@ inline Errors errors_of(const TimedRun& timed, std::size_t motor) {
         const auto passed = [&](Real time_ns) {
             return (ideal.steps_at_ns(motor, time_ns) - middle) * steps[i].direction >= 0;
         };
-        const Real after = i + 1 < steps.size() ? static_cast<Real>(steps[i + 1].time_ns) : now + 1e6L;
+        const Real after =
+            i + 1 < steps.size() ? static_cast<Real>(steps[i + 1].time_ns) : now + 1e6L;
         // As far out as it takes to find it on both sides, but not to the neighbours.
         Real reach = close_ns;
         Real low = now, high = now;
