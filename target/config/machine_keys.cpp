@@ -153,6 +153,8 @@ Problems machine_problems(const Printer& printer,
     } else if (given("delta")) {
         problems.emplace_back("delta", ": only for kinematics = \"delta\"");
     }
+    if (printer.max_jerk_mm_s3 > 0 && printer.max_jerk_mm_s3 < 1)
+        problems.emplace_back("max_jerk_mm_s3", ": expected 0 for no limit, or a number from 1 on");
     for (std::size_t axis = axis_x; axis <= axis_z; ++axis) {
         const std::string path = "shaper." + std::string(axis_names[axis]);
         if (printer.shapers[axis].kind != ShaperKind::none && !given(path + ".frequency_hz"))

@@ -90,6 +90,7 @@ TEST_CASE("machine: shapers and pressure advance, and what they need") {
     check_error("[shaper.x]\nkind = \"zv\"\n", 2, "needs frequency_hz");
     check_error("[shaper.x]\nkind = \"zv\"\nfrequency_hz = 1\n", 3, "from 2 to 500");
     check_error("[shaper.x]\nkind = \"zv\"\nfrequncy_hz = 40\n", 3, "did you mean `frequency_hz`?");
+    check_error("max_jerk_mm_s3 = 0.5\n", 1, "from 1 on");
     check_error("[shaper.e]\n", 1, "unknown key `e` in [shaper]");
     check_error("[pressure_advance]\nadvance_s = -1\n", 2, "from 0 to 2");
     check_error("[pressure_advance]\nadvance = 1\n", 2, "did you mean `advance_s`?");
