@@ -138,7 +138,11 @@ void append_machine_keys(std::vector<Key>& keys) {
     keys.push_back(towers_key("delta.tower_angle_deg", {-360, 360}, &DeltaFrame::tower_angle_deg));
     keys.push_back(number_key("delta.reach_mm", {1, 10'000},
                               [](Draft& d, double v) { d.printer.delta.reach_mm = v; }));
-    for (std::size_t axis = axis_x; axis <= axis_z; ++axis) append_shaper(keys, axis);
+    for (std::size_t axis = axis_x; axis <= axis_z; ++axis) {
+        append_shaper(keys, axis);
+        keys.push_back(number_key("axis." + std::string(axis_names[axis]) + ".backlash_mm", {0, 2},
+                                  [axis](Draft& d, double v) { d.printer.backlash_mm[axis] = v; }));
+    }
     keys.push_back(number_key("pressure_advance.advance_s", {0, 2},
                               [](Draft& d, double v) { d.printer.pressure_advance_s = v; }));
     keys.push_back(number_key("pressure_advance.smooth_s", {0.001, 0.2},

@@ -27,12 +27,13 @@ void TimeWalk::start(const MotorFunction& function, std::int64_t count) {
     low_s_ = high_s_ = seen_s_ = passed_s_ = 0;
     seen_ = high_ = function.at(0);
     last_ = function.at(duration_s_);
-    end_ = seen_.position;
+    begin_ = end_ = seen_.position;
     direction_ = 0;
 }
 
 // The stretch after this one; false: the piece ends.
 bool TimeWalk::next_stretch(const MotorFunction& function) {
+    take_up();
     if (high_s_ >= duration_s_) return false;
     const Sample low = high_;
     low_s_ = high_s_;
@@ -61,9 +62,29 @@ bool TimeWalk::next_stretch(const MotorFunction& function) {
     high_ = high;
     seen_s_ = passed_s_ = low_s_;
     seen_ = low;
+    begin_ = low.position;
     end_ = high.position;
-    direction_ = sign_of(end_ - low.position);
+    direction_ = sign_of(end_ - begin_);
     return true;
+}
+
+// The stretch is done: what the motor is ahead at its end.
+void TimeWalk::take_up() {
+    play_.ahead = motor_at(end_) - end_;
+    begin_ = end_;
+}
+
+double TimeWalk::motor_at(double position) const {
+    const double ahead = play_.ahead + Play::eagerness * (position - begin_);
+    return position + std::clamp(ahead, 0.0, play_.steps);
+}
+
+double TimeWalk::function_at(double middle) const {
+    if (play_.steps == 0) return middle;
+    const double made_up = middle - (direction_ > 0 ? play_.steps : 0);
+    const double meanwhile =
+        (middle - play_.ahead + Play::eagerness * begin_) / (1 + Play::eagerness);
+    return direction_ > 0 ? std::max(made_up, meanwhile) : std::min(made_up, meanwhile);
 }
 
 // The acceleration, over a stretch. A wrong sign too small to move the motor does not count.
@@ -96,9 +117,9 @@ double TimeWalk::turning_s(const MotorFunction& function, const Sample& high) co
 double TimeWalk::next_s(const MotorFunction& function) {
     for (;;) {
         const double middle = static_cast<double>(count_) + direction_ / 2.0;
-        if (direction_ != 0 && (end_ - middle) * direction_ > touch_steps) {
+        if (direction_ != 0 && (motor_at(end_) - middle) * direction_ > touch_steps) {
             count_ += direction_;
-            return passed_s_ = solve_s(function, middle);
+            return passed_s_ = solve_s(function, function_at(middle));
         }
         if (!next_stretch(function)) return no_step_s;
     }

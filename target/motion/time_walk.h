@@ -12,6 +12,8 @@
 // Contract
 //  1. Times come in ascending order, within exact_s of the root of the function.
 //  2. A middle that a stretch does not pass by touch_steps is not passed in it.
+//  3. With play the motor's position is that of the function plus what it is ahead. The function's play is
+//     made up for within steps / eagerness of each turn.
 
 #pragma once
 
@@ -21,12 +23,26 @@
 
 namespace lyr::motion {
 
+// What a motor turns in vain when it turns back: the play of its screw or belt. The motor runs ahead by it
+// while the axis rises, and by nothing while it falls; after a turn it gains `eagerness` times what the axis
+// moves until that is made up for.
+struct Play {
+    static constexpr double eagerness = 4;
+    double steps = 0;
+    double ahead = 0;  // of the axis now; 0 as after a motion downwards
+
+    // How far behind the axis may be meanwhile: until the motor has turned by the play.
+    static double lag(double steps) { return steps / (1 + eagerness); }
+};
+
 class TimeWalk {
 public:
     // Above the rounding of a sum of copies at 1e5 steps, far below what a motor can show.
     static constexpr double touch_steps = 1e-8;
     static constexpr double exact_s = 1e-10;
     static constexpr double no_step_s = std::numeric_limits<double>::infinity();
+
+    explicit TimeWalk(double play_steps = 0) : play_{play_steps} {}
 
     // A new piece of the function; the motor stands at `count`.
     void start(const MotorFunction& function, std::int64_t count);
@@ -38,10 +54,16 @@ public:
 
 private:
     bool next_stretch(const MotorFunction& function);
+    void take_up();
+    // Where the function is when the motor passes a middle, and the other way round.
+    double function_at(double middle) const;
+    double motor_at(double position) const;
     bool keeps_sign(const Sample& low, const Sample& high, double h) const;
     double turning_s(const MotorFunction& function, const Sample& high) const;
     double solve_s(const MotorFunction& function, double middle);
 
+    Play play_;
+    double begin_ = 0;  // of the stretch, where play_.ahead is what it was
     std::int64_t count_ = 0;
     double duration_s_ = 0, least_jerk_ = 0, most_jerk_ = 0, jerk_ = 0;
     int direction_ = 0;                 // in the stretch; 0: stands still

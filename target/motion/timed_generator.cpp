@@ -84,9 +84,9 @@ TimedGenerator::TimedGenerator(const Kinematics& kinematics, const Point& origin
             {std::visit(
                  [&](const auto& machine) { return function_of(machine, motor, origin, shaping); },
                  kinematics),
-             {},
+             TimeWalk(shaping.play_steps[motor]),
              {}});
-    motors_.push_back({extruder_of(steps_per_mm(kinematics)[axis_e], shaping), {}, {}});
+    motors_.push_back({extruder_of(steps_per_mm(kinematics)[axis_e], shaping), TimeWalk(), {}});
     for (const Motor& motor : motors_) {
         lead_ns_ = std::max(lead_ns_, motor.function.ahead_ns());
         behind_ns_ = std::max(behind_ns_, motor.function.behind_ns());

@@ -57,6 +57,8 @@ motion::Shaping shaping_of(const config::Printer& printer) {
         shaping.axes[axis] = motion::taps_of(
             motion::Shaper{kind_of(shaper.kind), shaper.frequency_hz, shaper.damping}, axis);
     }
+    for (std::size_t axis = 0; axis < printer.backlash_mm.size(); ++axis)
+        shaping.play_steps[axis] = printer.backlash_mm[axis] * printer.axes[axis].steps_per_mm;
     shaping.extruder = motion::taps_of(
         motion::PressureAdvance{printer.pressure_advance_s, printer.pressure_smooth_s});
     return shaping;
@@ -69,6 +71,8 @@ bool is_shaped(const config::Printer& printer) {
 }
 
 bool is_timed(const config::Printer& printer) {
+    for (const double backlash_mm : printer.backlash_mm)
+        if (backlash_mm > 0) return true;
     return is_shaped(printer) || printer.kinematics == config::Kinematics::delta ||
            printer.max_jerk_mm_s3 > 0;
 }

@@ -2,7 +2,7 @@
 //
 // Contract
 //  1. is_timed() says whether steps need the timed generator: a delta, a shaper, pressure advance or a
-//     limit of jerk.
+//     limit of jerk, or backlash.
 
 #pragma once
 

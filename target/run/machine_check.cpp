@@ -61,6 +61,8 @@ MachineCheck::MachineCheck(const config::Printer& printer, CurveSource source)
       plan_(printer) {
     for (std::size_t i = 0; i < steps_per_mm_.size(); ++i)
         steps_per_mm_[i] = printer.axes[i].steps_per_mm;
+    for (std::size_t i = 0; i < printer.backlash_mm.size(); ++i)
+        play_steps_[i] = printer.backlash_mm[i] * steps_per_mm_[i];
 }
 
 void MachineCheck::expect(std::span<const motion::PlannedMove> moves,
@@ -136,8 +138,10 @@ void MachineCheck::step(const DecodedStep& step) {
     const std::int64_t planned_ns = step.time_ns - shift_ns_;
     look_until(planned_ns, step.before);
     const std::int64_t before = step.before[step.axis];
+    const std::int64_t after = before + (step.positive ? 1 : -1);
     measure(step.axis, planned_ns, before);
-    measure(step.axis, planned_ns, before + (step.positive ? 1 : -1));
+    at_steps_[step.axis] = carried_steps(step.axis, after);
+    measure(step.axis, planned_ns, after);
     plan_.forget_before(planned_ns);
 }
 
@@ -158,10 +162,17 @@ void MachineCheck::look_until(std::int64_t time_ns, const StepPositions& positio
             measure(motor, looks_ns_.front(), positions[motor]);
 }
 
+// A rising motor pushes the axis `play` behind it, a falling one pulls it along.
+double MachineCheck::carried_steps(std::size_t motor, std::int64_t position) const {
+    const auto at = static_cast<double>(position);
+    return std::clamp(at_steps_[motor], at - play_steps_[motor], at);
+}
+
 void MachineCheck::measure(std::size_t motor, std::int64_t time_ns, std::int64_t position) {
     const double off_steps =
-        plan_.empty() ? infinity
-                      : std::abs(plan_.motor_steps(motor, time_ns) - static_cast<double>(position));
+        plan_.empty()
+            ? infinity
+            : std::abs(plan_.motor_steps(motor, time_ns) - carried_steps(motor, position));
     // Not the other way round: what is not a number must show.
     if (!(off_steps <= off_plan_[motor])) off_plan_[motor] = off_steps;
 }

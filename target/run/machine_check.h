@@ -8,6 +8,7 @@
 //  2. off_file() adds to that how far the plan's paths are from the file's curves, at both ends and between.
 //     Of a shaped motion it is the latter alone. Its distance_mm is what such steps can put the head off by,
 //     at the worst place of those that were visited.
+//     A motor with play carries its axis only where it has turned by the play; what is measured is the axis.
 //  3. Steps without a plan for their time, and curves of the file that the plan leaves out or adds, show as a
 //     deviation.
 
@@ -37,6 +38,8 @@ private:
     void measure_path(const AxisValues& planned_mm, const PathCurve& curve, double share);
     void stretch(const motion::Point& at);
     void look_until(std::int64_t time_ns, const StepPositions& positions);
+    // Where the play lets the axis be when the motor is at a position.
+    double carried_steps(std::size_t motor, std::int64_t position) const;
     void measure(std::size_t motor, std::int64_t time_ns, std::int64_t position);
 
     motion::Kinematics machine_;
@@ -44,6 +47,7 @@ private:
     CurveSource source_;
     ShapedPlan plan_;
     AxisValues steps_per_mm_{};
+    AxisValues play_steps_{}, at_steps_{};  // of the axes
     std::deque<std::int64_t> looks_ns_;
     std::deque<Shift> shifts_;
     std::int64_t shift_ns_ = 0;

@@ -111,3 +111,15 @@ TEST_CASE("printer 1: the step rate is that of the motors, not of the axes") {
     CHECK(parse_printer(slow + axes, "p").ok());
     check_error("kinematics = \"corexy\"\n" + slow, 7, "28000 steps a second");
 }
+
+TEST_CASE("machine: backlash is a length of x, y and z") {
+    CHECK(read("").backlash_mm == std::array<double, 3>{});
+    const std::string with = changed(axes, "[axis.y]\n", "[axis.y]\nbacklash_mm = 0.12\n");
+    const Result<Printer> read_back = parse_printer(with, "p.toml");
+    REQUIRE(read_back.ok());
+    CHECK(read_back->backlash_mm == std::array<double, 3>{0, 0.12, 0});
+    CHECK_FALSE(
+        parse_printer(changed(axes, "[axis.y]\n", "[axis.y]\nbacklash_mm = 3\n"), "p").ok());
+    CHECK_FALSE(
+        parse_printer(changed(axes, "[axis.e]\n", "[axis.e]\nbacklash_mm = 0.1\n"), "p").ok());
+}

@@ -177,4 +177,52 @@ TEST_CASE("timed 4: steps that lag behind come out when the plan is known to res
     CHECK(generator.lead_ns() + generator.tail_ns() > 40'000'000);
 }
 
+TEST_CASE("timed 1: a mechanism with play follows, and lags by a fifth of it after turns only") {
+    Job job = near_middle(5, 40, 3);
+    Shaping shaping;
+    shaping.play_steps = {8, 12.4, 30};
+    const TimedRun timed = timed_run(job, job.cartesian, shaping);
+    const test::TimedIdeal ideal(timed);
+    for (std::size_t motor = 0; motor < 3; ++motor) {
+        const double play = shaping.play_steps[motor];
+        const auto position = [&](std::int64_t time_ns) {
+            return static_cast<double>(ideal.steps_at_ns(motor, static_cast<Real>(time_ns)));
+        };
+        double axis = 0, turned_at = 0, last = 0, going = 0;
+        std::int64_t count = 0;
+        for (const MotorStep& step : steps_of(timed.run, motor)) {
+            const double now = position(step.time_ns);
+            if (going != step.direction) turned_at = last;
+            going = step.direction;
+            last = now;
+            const double before = std::abs(now - axis);
+            count += step.direction;
+            const auto at = static_cast<double>(count);
+            axis = std::clamp(axis, at - play, at);
+            const double after = std::abs(now - axis);
+            REQUIRE(std::max(before, after) <= 0.501 + Play::lag(play));
+            // A step's own width of doubt about where it turned.
+            if (std::abs(now - turned_at) > play / Play::eagerness + 1)
+                REQUIRE(std::max(before, after) <= 0.501);
+        }
+        CHECK(steps_of(timed.run, motor).size() > 100);
+    }
+}
+
+TEST_CASE("timed 3: play does not add up") {
+    Job job;
+    Line out{{0, 0, 0}, {3.3, 1.7, 0}, 0.1};
+    for (int i = 0; i < 200; ++i)
+        job.moves.push_back({i % 2 ? Line{out.to, out.from, 0.1} : out, 100, 0, 0});
+    Shaping shaping;
+    shaping.play_steps = {8, 8.3, 4};
+    const TimedRun timed = timed_run(job, job.cartesian, shaping);
+    CHECK(timed.run.counts[axis_x] == 0);
+    CHECK(timed.run.counts[axis_y] == 0);
+    CHECK(timed.run.counts[axis_z] == 0);
+    // There and back with the play each time: 264 + 8 steps and 136 + 8.3.
+    CHECK(steps_of(timed.run, axis_x).size() == 200 * (264 + 8));
+    CHECK(steps_of(timed.run, axis_y).size() == 200 * (136 + 8));
+}
+
 }  // namespace lyr::motion

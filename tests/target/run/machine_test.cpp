@@ -119,6 +119,20 @@ TEST_CASE("machine: shaped motions follow the shaped plan, and end where the fil
         }
 }
 
+TEST_CASE("machine: axes with backlash follow the file, a fifth of it late after turns") {
+    const std::string file = whole_print("backlash", {0.3, false, 20, 30});
+    for (const config::Printer& plain : {config::generic_printer(), shaped(crossed())}) {
+        config::Printer printer = plain;
+        printer.backlash_mm = {0.1, 0.15, 0.02};
+        const SimulationReport report = simulated(file, printer);
+        CAPTURE(text_of(report));
+        CHECK(report.within_limits());
+        CHECK(report.planned_steps[config::axis_x] > 1);
+        CHECK(report.planned_steps[config::axis_x] < 0.501 + 0.1 * 80 / 5);
+        CHECK(report.planned_steps[config::axis_e] < 0.501);
+    }
+}
+
 TEST_CASE("machine check 1, 3: a step left out, doubled, late or of another motor is found") {
     const std::string file = whole_print("mutated", {0.3, false, 20, 30});
     std::mt19937 random(5);
