@@ -1,5 +1,6 @@
 // lyrrun: prints a .lyr file on the lines of a Linux board, or simulates the print.
 
+#include <algorithm>
 #include <cstdio>
 #include <string>
 
@@ -8,8 +9,11 @@
 #include "apps/printer_file.h"
 #include "apps/progress_line.h"
 #include "apps/signal_watch.h"
+#include "base/read_text.h"
+#include "base/text.h"
 #include "target/run/print.h"
 #include "target/run/simulate.h"
+#include "target/run/tune.h"
 
 namespace {
 
@@ -17,7 +21,12 @@ using namespace lyr;
 using namespace lyr::command_line;
 
 struct Arguments {
-    std::string lyr_path, printer_path, trace_path;
+    std::string lyr_path, printer_path, trace_path, faults_path;
+    struct Tune {
+        std::size_t heater = 0;
+        double target_c = 0;
+    };
+    std::optional<Tune> tune;
     bool simulate = false, json = false, no_heat = false;
 };
 
@@ -27,31 +36,57 @@ constexpr Program program{
     "  lyrrun part.lyr --simulate                         the print on a generic printer, without "
     "one\n"
     "  lyrrun part.lyr --simulate --printer printer.toml  on your own\n"
-    "  lyrrun part.lyr --simulate --trace part.vcd        every edge of every line, for GTKWave\n"
+    "  lyrrun part.lyr --simulate --trace part.vcd        every edge of the motors' lines, for "
+    "GTKWave\n"
+    "  lyrrun part.lyr --printer printer.toml             print\n"
     "  lyrrun part.lyr --printer printer.toml --no-heat   move the machine, heaters off\n"
+    "  lyrrun --printer printer.toml --tune tool=210      find a heater's kp, ki and kd\n"
+    "  lyrrun part.lyr --simulate --faults faults.txt     see what the guards do about faults\n"
     "\n"
     "A print takes the whole path from the file and starts with the head at start_mm of the\n"
     "printer. Ctrl-C brings the head to rest on its path and releases all lines; a second\n"
-    "Ctrl-C does so at once. docs/configuration.md explains printer.toml.\n"
+    "Ctrl-C does so at once. Whatever ends it, all heaters go off. docs/configuration.md explains\n"
+    "printer.toml, docs/algorithms/heat.md the guards and the file of faults.\n"
     "What is reported goes to standard error where the trace goes to standard output.\n"
     "Exit status: 0 done, 2 options, 3 input, 4 not supported yet, 6 output, 7 the machine cannot\n"
     "or did not do it, 8 stopped on request.\n"};
 
+// "tool=210"
+std::optional<Arguments::Tune> tune_of(const std::string& value) {
+    const std::size_t equals = value.find('=');
+    const auto& names = config::heater_names;
+    const auto name = std::find(names.begin(), names.end(), value.substr(0, equals));
+    if (equals == std::string::npos || name == names.end()) return std::nullopt;
+    const std::optional<double> target_c = finite_number(value.substr(equals + 1));
+    if (!target_c || !(*target_c > 0)) return std::nullopt;
+    return Arguments::Tune{static_cast<std::size_t>(name - names.begin()), *target_c};
+}
+
 void add_options(CLI::App& app, Arguments& arguments) {
     add_file(app, "print", arguments.lyr_path,
              "The .lyr file that stepc wrote; it is read more than once, so that it cannot be -, "
-             "standard input")
-        ->required();
+             "standard input");
     add_file(app, "--printer", arguments.printer_path,
              "The machine: axes, limits and lines (printer.toml); needed to print; -: standard "
              "input");
     add_flag(app, "--simulate", arguments.simulate,
              "Run without a machine and without waiting; check every pulse against the file");
     add_file(app, "--trace", arguments.trace_path,
-             "Write the simulated lines as a wave file (VCD); -: standard output");
+             "Write the simulated lines of the motors as a wave file (VCD); -: standard output");
     add_flag(app, "--json", arguments.json, "Report the simulation as one JSON object");
     add_flag(app, "--no-heat", arguments.no_heat,
-             "Print although the file sets temperatures, which are passed over");
+             "Pass over the temperatures and fans that the file sets");
+    add_file(app, "--faults", arguments.faults_path,
+             "Break heaters and sensors of the simulation: one TIME_S FAULT HEATER a line; -: "
+             "standard input");
+    add_text(
+        app, "--tune", "HEATER=C",
+        [&arguments](const std::string& value) -> std::optional<std::string> {
+            arguments.tune = tune_of(value);
+            if (!arguments.tune) return "tool, bed or chamber, = and a temperature above 0";
+            return std::nullopt;
+        },
+        "Find kp, ki and kd of a heater at a temperature, in place of a print");
 }
 
 // "1:02:03"
@@ -73,10 +108,48 @@ run::ProgressSink shown_on(ProgressLine& line) {
     };
 }
 
+// None without --faults.
+Result<std::vector<thermal::Fault>> read_faults(const Arguments& arguments,
+                                                const config::Printer& printer) {
+    constexpr std::size_t most_bytes = std::size_t{1} << 20;
+    const std::string& path = arguments.faults_path;
+    if (path.empty()) return std::vector<thermal::Fault>();
+    const Result<std::string> text = read_text(path, most_bytes);
+    if (!text) return text.error();
+    return thermal::parse_faults(*text, path == "-" ? standard_input_name : path, printer);
+}
+
+Status tune(const Arguments& arguments, const config::Printer& printer) {
+    Result<std::vector<thermal::Fault>> faults = read_faults(arguments, printer);
+    if (!faults) return faults.error();
+    ProgressLine line;
+    run::TuneJob job{printer, arguments.tune->heater, arguments.tune->target_c, arguments.simulate,
+                     std::move(*faults)};
+    job.progress = [&line](const run::TuneProgress& now) {
+        char text[100];
+        std::snprintf(text, sizeof text, "%.1f °C, swing %d of %d, ", now.temperature_c,
+                      now.swings + 1, now.of);
+        line.show(text + clock_text(now.time_s));
+    };
+    const Result<thermal::TuneResult> result = run::tune(job);
+    line.clear();
+    if (!result) return result.error();
+    const std::string name(config::heater_names[arguments.tune->heater]);
+    char head[100];
+    std::snprintf(head, sizeof head, " tuned at %g °C%s\n", arguments.tune->target_c,
+                  arguments.simulate ? ", simulated" : "");
+    return tell("heater " + name + " of \"" + printer.name + '"' + head +
+                thermal::text_of(*result, name));
+}
+
 Status simulate(const Arguments& arguments, const config::Printer& printer) {
     const SignalWatch watch(program.name);
+    Result<std::vector<thermal::Fault>> faults = read_faults(arguments, printer);
+    if (!faults) return faults.error();
     ProgressLine line;
     run::SimulationJob job{arguments.lyr_path, printer, {}, shown_on(line), {}};
+    job.no_heat = arguments.no_heat;
+    job.faults = std::move(*faults);
     if (!arguments.trace_path.empty()) job.trace = arguments.trace_path;
     const Result<run::SimulationReport> report = run::simulate(job);
     line.clear();
@@ -103,21 +176,42 @@ Status print(const Arguments& arguments, const config::Printer& printer) {
                 run::text_of(*report));
 }
 
+// What makes no sense together.
+Status check_together(const Arguments& arguments) {
+    if (arguments.tune) {
+        if (!arguments.lyr_path.empty() || !arguments.trace_path.empty() || arguments.json ||
+            arguments.no_heat)
+            return usage("--tune goes without a print, --trace, --json and --no-heat");
+    } else if (arguments.lyr_path.empty()) {
+        return usage("print is required, the .lyr file that stepc wrote, or --tune");
+    }
+    if (!arguments.simulate && !arguments.faults_path.empty())
+        return usage("--faults needs --simulate");
+    if (arguments.no_heat && !arguments.faults_path.empty())
+        return usage("--faults has nothing to break with --no-heat");
+    if (arguments.printer_path == "-" && arguments.faults_path == "-")
+        return usage("only one of --printer and --faults can be standard input");
+    return Done{};
+}
+
 Status work(const Arguments& arguments) {
+    if (const Status together = check_together(arguments); !together) return together;
     // The whole file is checked before the first motion, and then read again.
     if (arguments.lyr_path == "-")
         return usage("a print is read more than once: give a file, not standard input");
     if (!arguments.simulate && arguments.printer_path.empty())
-        return usage("to print, --printer FILE must say what the machine is");
+        return usage("to print or tune, --printer FILE must say what the machine is");
     if (!arguments.simulate && (!arguments.trace_path.empty() || arguments.json))
         return usage("--trace and --json need --simulate");
-    if (const Status apart = check_apart(
-            {{"the print", arguments.lyr_path}, {"the printer's file", arguments.printer_path}},
-            {{"the trace", arguments.trace_path}});
+    if (const Status apart = check_apart({{"the print", arguments.lyr_path},
+                                          {"the printer's file", arguments.printer_path},
+                                          {"the faults", arguments.faults_path}},
+                                         {{"the trace", arguments.trace_path}});
         !apart)
         return apart;
     const Result<config::Printer> printer = read_printer(arguments.printer_path);
     if (!printer) return printer.error();
+    if (arguments.tune) return tune(arguments, *printer);
     return arguments.simulate ? simulate(arguments, *printer) : print(arguments, *printer);
 }
 

@@ -50,6 +50,7 @@ public:
     void table(const toml::table& table, const std::string& prefix);
     void check_missing();
     void check_lines();
+    void check_heat();
     void check_pulses();
     void check_machine();
     // The first problem in the order of the file.
@@ -135,23 +136,62 @@ void Walk::check_missing() {
             problem(place(key.path), key.path + " is missing");
 }
 
+// Every line of a printer with the key that names it, in order.
+std::vector<std::pair<std::string, std::optional<Pin>*>> lines_of(Printer& printer) {
+    std::vector<std::pair<std::string, std::optional<Pin>*>> lines;
+    for (std::size_t i = 0; i < axis_count; ++i) {
+        const std::string axis = "axis." + std::string(axis_names[i]) + '.';
+        lines.emplace_back(axis + "step", &printer.axes[i].step);
+        lines.emplace_back(axis + "direction", &printer.axes[i].direction);
+        lines.emplace_back(axis + "enable", &printer.axes[i].enable);
+    }
+    for (std::size_t i = 0; i < heater_count; ++i)
+        if (auto& heater = printer.heaters[i])
+            lines.emplace_back("heater." + std::string(heater_names[i]) + ".output",
+                               &heater->output);
+    if (printer.part_fan) lines.emplace_back("fan.part.output", &printer.part_fan->output);
+    return lines;
+}
+
 void Walk::check_lines() {
-    constexpr std::array<std::pair<const char*, std::optional<Pin> Axis::*>, 3> fields{
-        {{"step", &Axis::step}, {"direction", &Axis::direction}, {"enable", &Axis::enable}}};
     std::map<std::pair<std::string, std::variant<std::uint32_t, std::string>>, std::string> users;
-    for (std::size_t i = 0; i < axis_count; ++i)
-        for (const auto& [name, field] : fields) {
-            std::optional<Pin>& pin = draft_.printer.axes[i].*field;
-            if (!pin) continue;
-            if (pin->chip.empty()) pin->chip = draft_.chip;
-            const std::string path = "axis." + std::string(axis_names[i]) + '.' + name;
-            const auto [user, fresh] = users.emplace(std::pair{pin->chip, pin->line}, path);
-            if (fresh) continue;
-            std::string message = path + ": this line is already used by " + user->second;
-            // Drivers that share an enable line are common, and one key is enough for them.
-            if (field == &Axis::enable) message += "; leave the key out here if drivers share it";
-            problem(place(path), std::move(message));
-        }
+    for (const auto& [path, pin] : lines_of(draft_.printer)) {
+        if (!*pin) continue;
+        if ((*pin)->chip.empty()) (*pin)->chip = draft_.chip;
+        const auto [user, fresh] = users.emplace(std::pair{(*pin)->chip, (*pin)->line}, path);
+        if (fresh) continue;
+        std::string message = path + ": this line is already used by " + user->second;
+        // Drivers that share an enable line are common, and one key is enough for them.
+        if (path.ends_with(".enable")) message += "; leave the key out here if drivers share it";
+        problem(place(path), std::move(message));
+    }
+}
+
+// What concerns several keys of one heater.
+void Walk::check_heat() {
+    const auto both = [this](const std::string& section, const std::optional<Pin>& output,
+                             const std::string& pwm) {
+        if (output && !pwm.empty())
+            problem(place(section + ".pwm"),
+                    section + ".pwm: the heat goes out by a line or by a kernel PWM, and " +
+                        section + ".output is given too");
+    };
+    for (std::size_t i = 0; i < heater_count; ++i) {
+        const std::optional<Heater>& heater = draft_.printer.heaters[i];
+        if (!heater) continue;
+        const std::string section = "heater." + std::string(heater_names[i]);
+        both(section, heater->output, heater->pwm);
+        const SensorKind kind = heater->sensor.kind;
+        const std::size_t points = heater->sensor.points.size();
+        if (kind == SensorKind::steinhart_hart && points != 3)
+            problem(place(section + ".sensor"),
+                    section + ".sensor.points: a steinhart_hart sensor needs 3 points, found " +
+                        std::to_string(points));
+        if (kind == SensorKind::table && points < 2)
+            problem(place(section + ".sensor"),
+                    section + ".sensor.points: a table needs at least 2 points");
+    }
+    if (const auto& fan = draft_.printer.part_fan) both("fan.part", fan->output, fan->pwm);
 }
 
 void Walk::check_pulses() {
@@ -214,6 +254,7 @@ Result<Printer> parse_printer(std::string_view text, const std::string& file) {
     // A mistyped key is missing too; only the slip itself is worth telling.
     if (!walk.first_problem()) walk.check_missing();
     walk.check_lines();
+    walk.check_heat();
     walk.check_pulses();
     if (!walk.first_problem()) walk.check_machine();
     if (const auto* problem = walk.first_problem())
@@ -237,6 +278,9 @@ Printer generic_printer() {
     printer.axes[axis_y] = printer.axes[axis_x];
     printer.axes[axis_z] = {400, 12, 200, -room_mm, room_mm, false, {}, {}, {}};
     printer.axes[axis_e] = {400, 60, 5'000, 0, 0, false, {}, {}, {}};
+    for (const std::size_t heater : {heater_tool, heater_bed})
+        printer.heaters[heater] = default_heater(heater);
+    printer.part_fan.emplace();
     return printer;
 }
 
@@ -244,7 +288,9 @@ std::vector<std::string> known_keys() {
     std::set<std::string> paths;
     for (const Key& key : printer_keys()) {
         std::string path = key.path;
-        if (path.starts_with("axis.")) path.replace(5, 1, "*");
+        for (const std::string_view section : {"axis.", "heater."})
+            if (path.starts_with(section))
+                path.replace(section.size(), path.find('.', section.size()) - section.size(), "*");
         paths.insert(path);
     }
     return {paths.begin(), paths.end()};

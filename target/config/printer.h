@@ -26,6 +26,7 @@
 #include <vector>
 
 #include "base/diagnostic.h"
+#include "target/config/heater.h"
 
 namespace lyr::config {
 
@@ -35,12 +36,6 @@ enum class Kinematics : std::uint8_t { cartesian, corexy, delta };
 enum AxisNumber : std::size_t { axis_x = 0, axis_y = 1, axis_z = 2, axis_e = 3 };
 inline constexpr std::size_t axis_count = 4;
 inline constexpr std::array<std::string_view, axis_count> axis_names{"x", "y", "z", "e"};
-
-struct Pin {
-    std::string chip;
-    std::variant<std::uint32_t, std::string> line;
-    bool active_low = false;
-};
 
 struct Axis {
     double steps_per_mm = 0;  // microsteps, as the driver counts them
@@ -91,6 +86,8 @@ struct Printer {
     std::optional<double> filament_diameter_mm;  // none: as the file says
     PulseTiming pulse;
     std::array<Axis, axis_count> axes;
+    std::array<std::optional<Heater>, heater_count> heaters;
+    std::optional<Fan> part_fan;
 };
 
 // A middling Cartesian printer without lines and with room for any part, to simulate without a file.

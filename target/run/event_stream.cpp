@@ -5,8 +5,8 @@
 namespace lyr::run {
 
 Result<EventStream> EventStream::open(const std::string& path, const config::Printer& printer,
-                                      double filament_diameter_mm) {
-    Result<StepStream> steps = StepStream::open(path, printer, filament_diameter_mm);
+                                      double filament_diameter_mm, OrderQueue* orders) {
+    Result<StepStream> steps = StepStream::open(path, printer, filament_diameter_mm, orders);
     if (!steps) return steps.error();
     return EventStream(std::move(*steps),
                        PulseSchedule(printer.pulse, line_layout(printer).enable));

@@ -59,7 +59,9 @@ Result<bool> Executor::execute(std::span<const LineEvent> events) {
         worst_late_ns_ = std::max(worst_late_ns_, late_ns);
         stretched_ns_ += late_ns;
         if (late_ns > timing_.late_limit_ns) return too_late(late_ns, timing_.late_limit_ns);
-        if (Status written = write(event, *begin_ns); !written) return written.error();
+        last_begin_ns_ = *begin_ns;
+        if (((event.levels ^ levels_) & all_mark_bits) && !pass_mark(event)) return false;
+        if (Status written = write(event, last_begin_ns_); !written) return written.error();
     }
     return true;
 }
@@ -91,13 +93,32 @@ std::optional<std::int64_t> Executor::wait_until_ns(std::int64_t time_ns) {
     return clock_.wait_until_ns(time_ns);
 }
 
+bool Executor::pass_mark(const LineEvent& event) {
+    ++marks_reached_;
+    if (!marks_) return true;
+    marks_->reached.store(marks_reached_, std::memory_order_release);
+    if (!((event.levels ^ levels_) & gate_bit)) return true;
+    const std::int64_t from_ns = clock_.now_ns();
+    std::int64_t now_ns = from_ns;
+    while (marks_->done.load(std::memory_order_acquire) != marks_reached_) {
+        if (stop_requests_.load(std::memory_order_relaxed) != 0) return false;
+        now_ns = clock_.wait_until_ns(now_ns + wait_slice_ns);
+    }
+    waited_ns_ += now_ns - from_ns;
+    last_begin_ns_ = now_ns;
+    return true;
+}
+
 Status Executor::write(const LineEvent& event, std::int64_t begin_ns) {
-    Status written = chip_.write(levels_ ^ event.levels, event.levels);
+    const gpio::LineMask toggled = levels_ ^ event.levels;
+    const gpio::LineMask lines = toggled & ~all_mark_bits;
+    const bool only_marks = toggled != 0 && lines == 0;
+    Status written = only_marks ? Done{} : chip_.write(lines, event.levels);
     last_begin_ns_ = begin_ns;
     last_end_ns_ = clock_.now_ns();
     last_event_ns_ = event.time_ns;
     levels_ = event.levels;
-    ++writes_;
+    if (!only_marks) ++writes_;
     return written;
 }
 

@@ -15,7 +15,9 @@
 //     request stops after the pulse that is out. A long wait is left within wait_slice_ns.
 //     Before the first event a request ends it without a write.
 //  6. A failed write ends the print with its diagnostic.
-//  7. Nothing is allocated, locked or logged, and no call is made but wait and write.
+//  7. At a mark the count of those reached is stored; at a gate no further event is written until as many orders are
+//     done. The time spent there counts as neither time of events nor lateness. Without `marks` both are passed by.
+//  8. Nothing is allocated, locked or logged, and no call is made but wait and write.
 
 #pragma once
 
@@ -26,6 +28,7 @@
 
 #include "target/gpio/clock.h"
 #include "target/gpio/gpio_chip.h"
+#include "target/run/heat_order.h"
 #include "target/run/pulse_schedule.h"
 
 namespace lyr::run {
@@ -47,8 +50,12 @@ public:
     static constexpr std::int64_t wait_slice_ns = 50'000'000;
 
     Executor(gpio::GpioChip& chip, gpio::Clock& clock, ExecutorTiming timing,
-             const StopRequests& stop_requests)
-        : chip_(chip), clock_(clock), timing_(timing), stop_requests_(stop_requests) {}
+             const StopRequests& stop_requests, Marks* marks = nullptr)
+        : chip_(chip),
+          clock_(clock),
+          timing_(timing),
+          stop_requests_(stop_requests),
+          marks_(marks) {}
 
     // True: all written. False: stopped on request; what is left of the events must not be written.
     Result<bool> execute(std::span<const LineEvent> events);
@@ -59,6 +66,8 @@ public:
     std::int64_t stretched_ns() const { return stretched_ns_; }
     std::int64_t worst_late_ns() const { return worst_late_ns_; }
     std::uint64_t writes() const { return writes_; }
+    // Spent at gates.
+    std::int64_t waited_ns() const { return waited_ns_; }
 
 private:
     void start(const LineEvent& event);
@@ -68,11 +77,14 @@ private:
     // The time after the wait, or none if it was left on request.
     std::optional<std::int64_t> wait_until_ns(std::int64_t time_ns);
     Status write(const LineEvent& event, std::int64_t begin_ns);
+    // False: left on request.
+    bool pass_mark(const LineEvent& event);
 
     gpio::GpioChip& chip_;
     gpio::Clock& clock_;
     ExecutorTiming timing_;
     const StopRequests& stop_requests_;
+    Marks* marks_;
     bool started_ = false;
     gpio::LineMask levels_ = 0;
     std::int64_t last_event_ns_ = 0;
@@ -82,6 +94,8 @@ private:
     std::int64_t stretched_ns_ = 0;
     std::int64_t worst_late_ns_ = 0;
     std::uint64_t writes_ = 0;
+    std::uint32_t marks_reached_ = 0;
+    std::int64_t waited_ns_ = 0;
 };
 
 }  // namespace lyr::run

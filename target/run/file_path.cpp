@@ -52,7 +52,7 @@ void FilePath::visit(const format::LayerStart& layer) {
     ++totals_.layers;
     const format::LayerState& state = reader_.layer().state;
     for (const format::HeaterTarget& target : state.temperatures)
-        visit(format::Temperature{target.heater, target.target_c, true});
+        visit(format::Temperature{target.heater, target.target_c, first_layer_});
     for (const format::Fan& fan : state.fans) visit(fan);
     visit(format::Tool{state.tool});
     const double drawn_back_mm = state.retracted_mm;
@@ -82,6 +82,9 @@ void FilePath::visit(const format::Retract& retract) {
 }
 
 void FilePath::visit(const format::Temperature& temperature) {
+    if (temperature.heater.kind == format::HeaterKind::tool)
+        sure_tool_c_ =
+            temperature.wait ? temperature.target_c : std::min(sure_tool_c_, temperature.target_c);
     if (!(temperature.target_c > 0)) return;
     for (format::HeaterTarget& known : demands_.hottest)
         if (known.heater == temperature.heater) {
@@ -178,6 +181,7 @@ void FilePath::draw_back(double depth_mm) {
     const double feed_mm = drawn_back_mm_ - depth_mm;
     drawn_back_mm_ = depth_mm;
     if (feed_mm == 0) return;
+    if (feed_mm > 0) note_pushing();
     PathCurve curve;
     curve.to_mm = at_mm_;
     curve.to_mm[axis_e] = fed_mm(feed_mm);
@@ -217,7 +221,14 @@ void FilePath::extrude(PathCurve& curve, double way_mm) {
     const double filament_mm =
         way_mm * format::cross_section_mm2(reader_.path()) / filament_area_mm2_;
     totals_.filament_mm += filament_mm;
+    if (filament_mm > 0) note_pushing();
     curve.to_mm[axis_e] = fed_mm(filament_mm);
+}
+
+void FilePath::note_pushing() {
+    if (demands_.coldest_extrusion_c && *demands_.coldest_extrusion_c <= sure_tool_c_) return;
+    demands_.coldest_extrusion_c = sure_tool_c_;
+    demands_.coldest_layer = totals_.layers;
 }
 
 double FilePath::fed_mm(double feed_mm) {

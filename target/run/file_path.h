@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "format/reader.h"
@@ -33,6 +34,10 @@ struct Demands {
     std::uint32_t highest_tool = 0;
     std::uint32_t pauses = 0;
     double dwell_s = 0;
+    // The lowest temperature that the tool is sure to have where filament is pushed: that of the last wait, or of a
+    // lower target since. None: no filament is.
+    std::optional<double> coldest_extrusion_c;
+    std::uint32_t coldest_layer = 0;  // from 1
 };
 
 class FilePath {
@@ -68,6 +73,8 @@ private:
     void straight(const AxisValues& to_mm, bool extrudes);
     void turn(PathCurve curve, const format::Point& to);
     void append(const PathCurve& curve);
+    // Filament is pushed at the temperature that the tool has now.
+    void note_pushing();
     // Sets the extruder's end for a curve of this length.
     void extrude(PathCurve& curve, double way_mm);
     // The extruder's coordinate after this much more; compensated summation, so that hundreds of
@@ -81,6 +88,7 @@ private:
     double feed_error_mm_ = 0;
     double drawn_back_mm_ = 0;
     bool first_layer_ = true;
+    double sure_tool_c_ = 0;
     PathTotals totals_;
     Demands demands_;
     std::array<PathCurve, 4> waiting_;  // one operation makes no more

@@ -15,8 +15,11 @@ Result<std::optional<Instruction>> Interpreter::next() {
         if (!*operation) return std::optional<Instruction>();
         maker_.take(**operation, reader_.layer().state, reader_.path());
         given_ = 0;
+        if (const auto order = orders_.take(**operation, reader_.layer().state))
+            return std::optional<Instruction>(*order);
     }
-    return std::optional(maker_.made()[given_++]);
+    return std::optional(
+        std::visit([](const auto& made) -> Instruction { return made; }, maker_.made()[given_++]));
 }
 
 }  // namespace lyr::run

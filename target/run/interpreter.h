@@ -5,6 +5,7 @@
 //  1. The instructions are those of MoveMaker for the file's operations in their order, from the
 //     printer's start on.
 //  2. Memory is bounded: it does not grow with the file.
+//  3. Orders for heaters and fans stand before the instructions of the operation that gives them.
 
 #pragma once
 
@@ -13,12 +14,14 @@
 
 #include "format/reader.h"
 #include "target/moves/move_maker.h"
+#include "target/run/heat_order.h"
 
 namespace lyr::run {
 
-using moves::Instruction;
 using moves::motion_limits;
 using moves::Rest;
+
+using Instruction = std::variant<motion::Move, Rest, HeatOrder>;
 
 class Interpreter {
 public:
@@ -30,6 +33,7 @@ public:
 private:
     format::Reader reader_;
     moves::MoveMaker maker_;
+    HeatOrders orders_;
     std::size_t given_ = 0;  // of what the operation read last made
 };
 

@@ -32,6 +32,11 @@ inline constexpr gpio::LineMask all_step_bits = [] {
 }();
 inline constexpr gpio::LineMask all_direction_bits = all_step_bits << 1;
 
+// Beyond all lines: events at which one of these changes are marks of heat_order.h, and gates of them.
+inline constexpr gpio::LineMask mark_bit = gpio::line_bit(gpio::max_lines - 1);
+inline constexpr gpio::LineMask gate_bit = gpio::line_bit(gpio::max_lines - 2);
+inline constexpr gpio::LineMask all_mark_bits = mark_bit | gate_bit;
+
 struct LineLayout {
     std::vector<std::string> names;
     gpio::LineMask enable = 0;

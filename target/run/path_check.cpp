@@ -18,58 +18,88 @@ using config::axis_y;
 constexpr double pi = std::numbers::pi;
 // Of angles in double precision, in turns.
 constexpr double rounding_turns = 1e-12;
+// Of shares of a curve that were computed from different ones: far below a step on the longest curve.
+constexpr double same_share = 1e-11;
 
-// Looks for the first share from a given one on at which an axis passes a middle in one direction.
+// A place where a step may be due. It is decided if the curve passes the middle there for certain.
+struct Place {
+    double share;
+    bool decided;
+};
+
+// Looks along one curve for the places where an axis may step through a middle in one direction.
 struct Crossing {
     const PathCurve& curve;
     std::size_t axis;
     double middle_mm, slack_mm;
-    double sign;    // +1: upwards
-    bool reversal;  // the axis passed the same middle the other way last
+    double sign;  // +1: upwards
 
     double ahead(double at_mm) const { return sign * (at_mm - middle_mm); }
-    bool close(double at_mm) const { return std::abs(at_mm - middle_mm) <= slack_mm; }
+    bool touches(double at_mm) const { return std::abs(at_mm - middle_mm) <= slack_mm; }
 
-    std::optional<double> on_line(double share) const {
-        const double change = curve.to_mm[axis] - curve.from_mm[axis];
-        if (sign * change <= 0 || ahead(curve.to_mm[axis]) < -slack_mm) return std::nullopt;
-        return std::clamp((middle_mm - curve.from_mm[axis]) / change, share, 1.0);
+    // The first place from the share on; `at_mm` is where the axis is there. `again`: after a place found there.
+    std::optional<Place> find(double share, double at_mm, bool again) const {
+        // Other axes, due a moment later by rounding, have led the curve on past the middle.
+        if (ahead(at_mm) > slack_mm && !again) return Place{share, true};
+        const bool turns = curve.is_arc && axis <= axis_y;
+        return turns ? on_arc(share, at_mm, again) : on_line(share, at_mm, again);
     }
 
-    std::optional<double> on_arc(double share, double at_mm) const {
+private:
+    std::optional<Place> on_line(double share, double at_mm, bool again) const {
+        const double change = curve.to_mm[axis] - curve.from_mm[axis];
+        const bool passes = sign * change > 0 && ahead(curve.to_mm[axis]) > slack_mm;
+        if (again) return std::nullopt;
+        if (touches(at_mm) && !passes) return Place{share, false};
+        if (sign * change <= 0 || ahead(curve.to_mm[axis]) < -slack_mm) return std::nullopt;
+        return Place{std::clamp((middle_mm - curve.from_mm[axis]) / change, share, 1.0), passes};
+    }
+
+    std::optional<Place> on_arc(double share, double at_mm, bool again) const {
         const double center = axis == axis_x ? curve.center_x_mm : curve.center_y_mm;
-        double reach = sign * (middle_mm - center) / curve.radius_mm;
-        if (reach > 1 && (reach - 1) * curve.radius_mm <= slack_mm) reach = 1;
-        if (reach > 1 || reach < -1) return std::nullopt;
+        const double exact_reach = sign * (middle_mm - center) / curve.radius_mm;
+        const double beyond_mm = (1 - exact_reach) * curve.radius_mm;  // that the extreme gets
+        if (beyond_mm < -slack_mm) return std::nullopt;
         // Turned so that "far enough" is cos(turned) >= reach, and time runs towards larger angles.
         const double angle = curve.start_angle_rad + curve.sweep_rad * share -
                              (axis == axis_y ? pi / 2 : 0) + (sign < 0 ? pi : 0);
         const double turned = curve.sweep_rad < 0 ? -angle : angle;
-        const double half_width = std::acos(reach);
+        const double half_width = std::acos(std::clamp(exact_reach, -1.0, 1.0));
         const double turns = (turned + half_width) / (2 * pi);
-        // On the way past the middle the entry nearby is the one looked for, though another axis, due a
-        // moment later by rounding, may have led the curve on to just behind it.
-        const bool passing = close(at_mm) && std::sin(turned) < 0;
-        const double whole = passing ? std::round(turns) : std::ceil(turns - rounding_turns);
-        const double entry = 2 * pi * whole - half_width;
-        const double at = std::max(share, share + (entry - turned) / std::abs(curve.sweep_rad));
-        if (at <= 1) return at;
-        if (reversal || !close(curve.to_mm[axis])) return std::nullopt;
-        return 1.0;
-    }
-
-    // `at_mm` is where the axis is at the share.
-    std::optional<double> from(double share, double at_mm) const {
-        const double now_mm = ahead(at_mm);
-        // Other axes, due a moment later by rounding, have led the curve on past the middle.
-        if (now_mm > slack_mm) return share;
-        const auto found = curve.is_arc && axis <= axis_y ? on_arc(share, at_mm) : on_line(share);
-        if (found || reversal || now_mm < -slack_mm) return found;
-        return share;
+        const double sweep = std::abs(curve.sweep_rad);
+        const auto entry = [&](double turn) {
+            return share + (2 * pi * turn - half_width - turned) / sweep;
+        };
+        // Passed if the extreme lies further than a touch, and the curve gets there or as far.
+        const auto passes = [&](double at) {
+            const bool to_extreme = at + half_width / sweep <= 1;
+            return beyond_mm > slack_mm && (to_extreme || ahead(curve.to_mm[axis]) > slack_mm);
+        };
+        const bool touching = touches(at_mm), rising = std::sin(turned) < 0;
+        if (touching && !again) {
+            // On the way past the middle the entry nearby is the place, though another axis, due a moment later by
+            // rounding, may have led the curve on to just behind it.
+            const double at = std::clamp(entry(std::round(turns)), share, 1.0);
+            if (rising && passes(at)) return Place{at, true};
+            return Place{share, false};
+        }
+        double turn =
+            touching && rising ? std::round(turns) + 1 : std::ceil(turns - rounding_turns);
+        if (again && entry(turn) < share + same_share) ++turn;
+        const double at = std::max(share, entry(turn));
+        if (at > 1) return std::nullopt;
+        return Place{at, passes(at)};
     }
 };
 
 }  // namespace
+
+// The step that is to be placed.
+struct PathCheck::Due {
+    const StepPositions& before;
+    std::size_t axis;
+    double middle_mm, slack_mm, sign;
+};
 
 AxisValues PathCurve::at(double share) const {
     AxisValues point;
@@ -86,7 +116,10 @@ PathCheck::PathCheck(const AxisValues& steps_per_mm, const AxisValues& origin_mm
                      CurveSource source)
     : steps_per_mm_(steps_per_mm), origin_mm_(origin_mm), source_(std::move(source)) {
     // Where the head stands before the file's first motion.
-    curve_.from_mm = curve_.to_mm = point_mm_ = origin_mm;
+    PathCurve& start = curves_.emplace_back();
+    start.from_mm = start.to_mm = origin_mm;
+    readings_.resize(1);
+    readings_.front().point_mm = origin_mm;
     for (std::size_t i = 0; i < axis_count; ++i) step_mm_[i] = 1 / steps_per_mm[i];
 }
 
@@ -94,77 +127,138 @@ void PathCheck::step(const DecodedStep& step) {
     if (lost()) return;
     const double sign = step.positive ? 1 : -1;
     const auto before = static_cast<double>(step.before[step.axis]);
-    const double middle_mm = position_mm(step.axis, before + sign / 2);
-    const bool reversal = last_sign_[step.axis] * sign < 0;
-    last_sign_[step.axis] = sign;
-    const double slack_mm = touch_steps / steps_per_mm_[step.axis];
-    for (;;) {
-        const Crossing crossing{curve_, step.axis, middle_mm, slack_mm, sign, reversal};
-        const std::optional<double> share = crossing.from(share_, point_mm_[step.axis]);
-        follow_to(share.value_or(1.0), step.before);
-        if (share || lost()) break;
-        if (!next_curve()) break;
+    const Due due{step.before, step.axis, position_mm(step.axis, before + sign / 2),
+                  touch_steps / steps_per_mm_[step.axis], sign};
+    const std::size_t count = readings_.size();
+    for (std::size_t i = 0; i < count; ++i) place(i, due);
+    sift();
+}
+
+void PathCheck::place(std::size_t index, const Due& due) {
+    const Sought first = seek(readings_[index], due, false);
+    if (first != Sought::touched) return step_here(readings_[index], due);
+    Reading rest = readings_[index];
+    step_here(readings_[index], due);
+    const double most_steps = readings_[index].deviation.worst_steps + left_behind_steps;
+    for (Sought next = first; next == Sought::touched && readings_.size() < most_readings;) {
+        next = seek(rest, due, true);
+        if (next == Sought::nowhere || rest.deviation.worst_steps > most_steps) return;
+        step_here(readings_.emplace_back(rest), due);
     }
-    // The point where the step was due belongs to the new position too.
-    measure(step.axis, point_mm_, step.before[step.axis] + (step.positive ? 1 : -1));
+}
+
+PathCheck::Sought PathCheck::seek(Reading& reading, const Due& due, bool again) {
+    for (;;) {
+        const Crossing crossing{curve_of(reading), due.axis, due.middle_mm, due.slack_mm, due.sign};
+        const auto place = crossing.find(reading.share, reading.point_mm[due.axis], again);
+        follow_to(reading, place ? place->share : 1.0, due.before);
+        if (place) return place->decided ? Sought::passed : Sought::touched;
+        if (reading.deviation.worst_steps > lost_steps || !next_curve(reading))
+            return Sought::nowhere;
+        again = false;
+    }
+}
+
+// The point where the step was due belongs to the new position too.
+void PathCheck::step_here(Reading& reading, const Due& due) const {
+    const std::int64_t after = due.before[due.axis] + (due.sign > 0 ? 1 : -1);
+    measure(reading, due.axis, reading.point_mm, after);
+}
+
+void PathCheck::sift() {
+    const auto is_better = [](const Reading& a, const Reading& b) {
+        return a.deviation.worst_steps < b.deviation.worst_steps;
+    };
+    if (readings_.size() > 1) {
+        std::stable_sort(readings_.begin(), readings_.end(), is_better);
+        const double most_steps = deviation().worst_steps + left_behind_steps;
+        std::size_t kept = 0;
+        for (const Reading& reading : readings_) {
+            const auto is_same = [&](const Reading& better) {
+                return better.curve == reading.curve &&
+                       std::abs(better.share - reading.share) <= same_share;
+            };
+            const auto better = readings_.begin() + static_cast<std::ptrdiff_t>(kept);
+            if (reading.deviation.worst_steps > most_steps) break;
+            if (std::any_of(readings_.begin(), better, is_same)) continue;
+            readings_[kept++] = reading;
+        }
+        readings_.resize(kept);
+    }
+    std::size_t first = readings_.front().curve;
+    for (const Reading& reading : readings_) first = std::min(first, reading.curve);
+    for (; dropped_ < first; ++dropped_) curves_.pop_front();
 }
 
 void PathCheck::finish(const StepPositions& positions) {
     if (lost()) return;
-    do follow_to(1.0, positions);
-    while (!lost() && next_curve());
+    for (Reading& reading : readings_) {
+        do follow_to(reading, 1.0, positions);
+        while (reading.deviation.worst_steps <= lost_steps && next_curve(reading));
+    }
+    sift();
 }
 
-bool PathCheck::next_curve() {
-    if (ended_) return false;
-    const Result<bool> more = source_(curve_);
-    if (!more) status_ = more.error();
-    ended_ = !more || !*more;
-    if (ended_) return false;
-    share_ = 0;
-    point_mm_ = curve_.from_mm;
+bool PathCheck::next_curve(Reading& reading) {
+    if (reading.curve + 1 == dropped_ + curves_.size()) {
+        if (ended_) return false;
+        PathCurve next;
+        const Result<bool> more = source_(next);
+        if (!more) status_ = more.error();
+        ended_ = !more || !*more;
+        if (ended_) return false;
+        curves_.push_back(next);
+    }
+    ++reading.curve;
+    reading.share = 0;
+    reading.point_mm = curve_of(reading).from_mm;
     return true;
 }
 
-void PathCheck::follow_to(double share, const StepPositions& positions) {
-    // Nothing has changed since the last measurement here but what step() has measured.
-    if (share == share_ && share > 0) return;
-    if (curve_.is_arc) {
+void PathCheck::follow_to(Reading& reading, double share, const StepPositions& positions) const {
+    // Nothing has changed since the last measurement here but what step_here() has measured.
+    if (share == reading.share && share > 0) return;
+    const PathCurve& curve = curve_of(reading);
+    if (curve.is_arc) {
         // Multiples of a quarter turn strictly inside are the turning points of x and y.
-        const double from = (curve_.start_angle_rad + curve_.sweep_rad * share_) / (pi / 2);
-        const double to = (curve_.start_angle_rad + curve_.sweep_rad * share) / (pi / 2);
+        const double from = (curve.start_angle_rad + curve.sweep_rad * reading.share) / (pi / 2);
+        const double to = (curve.start_angle_rad + curve.sweep_rad * share) / (pi / 2);
         const double low = std::min(from, to), high = std::max(from, to);
         for (double quarter = std::floor(low) + 1; quarter < high; ++quarter) {
             const double angle = quarter * (pi / 2);
-            measure(curve_.at((angle - curve_.start_angle_rad) / curve_.sweep_rad), positions);
+            measure(reading, curve.at((angle - curve.start_angle_rad) / curve.sweep_rad),
+                    positions);
         }
     }
-    share_ = share;
-    point_mm_ = curve_.at(share);
-    measure(point_mm_, positions);
+    reading.share = share;
+    reading.point_mm = curve.at(share);
+    measure(reading, reading.point_mm, positions);
 }
 
-void PathCheck::measure(const AxisValues& at_mm, const StepPositions& positions) {
+void PathCheck::measure(Reading& reading, const AxisValues& at_mm,
+                        const StepPositions& positions) const {
     double squared_mm2 = 0;
     for (std::size_t i = 0; i < axis_count; ++i) {
-        const double off_mm = measure(i, at_mm, positions[i]);
+        const double off_mm = measure(reading, i, at_mm, positions[i]);
         if (i != axis_e) squared_mm2 += off_mm * off_mm;
     }
-    if (squared_mm2 <= distance_mm2_) return;
-    distance_mm2_ = squared_mm2;
-    deviation_.distance_mm = std::sqrt(squared_mm2);
+    if (squared_mm2 <= reading.distance_mm2) return;
+    reading.distance_mm2 = squared_mm2;
+    reading.deviation.distance_mm = std::sqrt(squared_mm2);
 }
 
-double PathCheck::measure(std::size_t axis, const AxisValues& at_mm, std::int64_t position) {
+double PathCheck::measure(Reading& reading, std::size_t axis, const AxisValues& at_mm,
+                          std::int64_t position) const {
     const double off_mm = std::abs(at_mm[axis] - position_mm(axis, static_cast<double>(position)));
     const double off_steps = off_mm * steps_per_mm_[axis];
-    if (off_steps <= deviation_.steps[axis]) return off_mm;
-    deviation_.steps[axis] = off_steps;
-    if (off_steps <= deviation_.worst_steps) return off_mm;
-    deviation_.worst_steps = off_steps;
-    deviation_.worst_axis = axis;
-    deviation_.worst_layer = curve_.layer;
-    deviation_.worst_at_mm = at_mm;
+    Deviation& deviation = reading.deviation;
+    if (off_steps <= deviation.steps[axis]) return off_mm;
+    deviation.steps[axis] = off_steps;
+    if (off_steps <= deviation.worst_steps) return off_mm;
+    deviation.worst_steps = off_steps;
+    deviation.worst_axis = axis;
+    deviation.worst_layer = curve_of(reading).layer;
+    deviation.worst_at_mm = at_mm;
     return off_mm;
 }
 

@@ -8,6 +8,10 @@
 // passes the middle, and the distances met on the way, turning points of arcs included, are the
 // deviation. The curve is only ever followed forwards, so that order and direction are judged too.
 //
+// Where a curve only touches a middle, or runs along it, the step may be due there or at a later touch
+// or passing, and only what follows can tell: each of these readings is followed, and the best counts.
+// Readings that have come to the same place are one; those that a better one leaves behind end.
+//
 // Contract
 //  1. The deviation of an axis is the largest distance, in its steps, between the position and the point
 //     of the curve that belongs to it, at every step and between steps. A perfect train of pulses
@@ -15,7 +19,7 @@
 //  2. Steps that are missing, too many, of the wrong axis or direction, or in an order that no motion
 //     along the curve gives, show as a deviation of more than half a step.
 //  3. Steps of the same point of the curve may come in either order. A curve that turns back within
-//     `touch_steps` of a middle may be stepped to or not.
+//     `touch_steps` of a middle may be stepped to or not, each time that it does.
 //  4. Once the deviation exceeds `lost_steps`, following ends; lost() tells.
 
 #pragma once
@@ -23,7 +27,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <functional>
+#include <vector>
 
 #include "base/diagnostic.h"
 #include "target/run/pulse_decoder.h"
@@ -63,6 +69,10 @@ public:
     // a motor can show.
     static constexpr double touch_steps = 1e-6;
     static constexpr double lost_steps = 16;
+    // A reading that is worse than another by this much will not become the better one: the right one is never off by
+    // more than half a step.
+    static constexpr double left_behind_steps = 0.05;
+    static constexpr std::size_t most_readings = 16;
 
     // Position 0 of the decoder is at origin_mm.
     PathCheck(const AxisValues& steps_per_mm, const AxisValues& origin_mm, CurveSource source);
@@ -71,30 +81,49 @@ public:
     // The rest of the file's path, against the last position.
     void finish(const StepPositions& positions);
 
-    const Deviation& deviation() const { return deviation_; }
-    bool lost() const { return deviation_.worst_steps > lost_steps; }
+    // Of the best reading.
+    const Deviation& deviation() const { return readings_.front().deviation; }
+    bool lost() const { return deviation().worst_steps > lost_steps; }
     // Reading the file failed.
     const Status& status() const { return status_; }
 
 private:
-    bool next_curve();
-    void follow_to(double share, const StepPositions& positions);
+    struct Reading {
+        std::size_t curve = 0;    // how many the source has given before it
+        double share = 1;         // of the curve, up to which it was followed
+        AxisValues point_mm{};    // there
+        double distance_mm2 = 0;  // the largest, squared
+        Deviation deviation;
+    };
+    struct Due;
+
+    enum class Sought : std::uint8_t { passed, touched, nowhere };
+
+    // Moves the reading to the first place where the step may be due, and appends readings for further ones.
+    void place(std::size_t index, const Due& due);
+    // Moves on to where the step may be due next, with `again` later than where the reading is.
+    Sought seek(Reading& reading, const Due& due, bool again);
+    bool next_curve(Reading& reading);
+    const PathCurve& curve_of(const Reading& reading) const {
+        return curves_[reading.curve - dropped_];
+    }
+    void follow_to(Reading& reading, double share, const StepPositions& positions) const;
+    void step_here(Reading& reading, const Due& due) const;
+    void sift();
     // All axes at a point of the curve, and the stepping one alone after its step.
-    void measure(const AxisValues& at_mm, const StepPositions& positions);
-    double measure(std::size_t axis, const AxisValues& at_mm, std::int64_t position);
+    void measure(Reading& reading, const AxisValues& at_mm, const StepPositions& positions) const;
+    double measure(Reading& reading, std::size_t axis, const AxisValues& at_mm,
+                   std::int64_t position) const;
     double position_mm(std::size_t axis, double steps) const {
         return origin_mm_[axis] + steps * step_mm_[axis];
     }
 
     AxisValues steps_per_mm_, step_mm_{}, origin_mm_;
     CurveSource source_;
-    PathCurve curve_;
-    AxisValues last_sign_{};   // of each axis's last step
-    double share_ = 1;         // of the curve, up to which it was followed
-    AxisValues point_mm_{};    // there
-    double distance_mm2_ = 0;  // the largest, squared
+    std::deque<PathCurve> curves_;  // from that of the reading that is furthest behind
+    std::size_t dropped_ = 0;       // before them
     bool ended_ = false;
-    Deviation deviation_;
+    std::vector<Reading> readings_;  // the best first; never empty
     Status status_ = Done{};
 };
 

@@ -1,15 +1,18 @@
-// Three threads: this one, the planning one that fills the ring, and the real-time one that empties it.
-// They share the ring, the number of requests to stop and a few numbers for the progress.
+// Four threads: this one, the planning one that fills the ring, the real-time one that empties it, and the one that
+// tends the heaters. They share the ring, the marks of orders, the number of requests to stop and a few numbers for the
+// progress.
 
 #include "target/run/print.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <mutex>
 #include <optional>
 #include <thread>
 
 #include "target/gpio/gpiod_chip.h"
+#include "target/run/demands.h"
 #include "target/run/event_ring.h"
 #include "target/run/event_stream.h"
 #include "target/run/executor.h"
@@ -28,33 +31,7 @@ constexpr int signal_wait_ms = 100;
 constexpr double ns_per_s = 1e9;
 constexpr double ns_per_us = 1e3;
 
-std::string name_of(const format::Heater& heater) {
-    switch (heater.kind) {
-        case format::HeaterKind::bed:
-            return "the bed";
-        case format::HeaterKind::chamber:
-            return "the chamber";
-        case format::HeaterKind::tool:
-            return "tool " + std::to_string(heater.tool);
-    }
-    return "a heater";
-}
-
-std::string heat_text(const Demands& demands) {
-    std::string text;
-    for (const format::HeaterTarget& target : demands.hottest) {
-        char temperature[32];
-        std::snprintf(temperature, sizeof temperature, " to %g °C", target.target_c);
-        text += (text.empty() ? "" : ", ") + name_of(target.heater) + temperature;
-    }
-    return text;
-}
-
-Diagnostic note(std::string message) {
-    return {Severity::note, ExitStatus::ok, std::move(message), {}};
-}
-
-// What the three threads share.
+// What the threads share.
 struct Shared {
     EventRing ring{ring_events};
     StopRequests stop_requests{0};
@@ -62,6 +39,23 @@ struct Shared {
     std::atomic<bool> finished{false};  // the real-time thread has ended
     std::atomic<std::uint32_t> layer{0};
     std::atomic<std::int64_t> time_ns{0};
+    OrderQueue orders;
+    Marks marks;
+
+    // The first that fires brings the head to rest.
+    void tripped(const thermal::Trip& trip) {
+        const std::lock_guard lock(trip_mutex_);
+        if (!trip_) ++stop_requests;
+        if (!trip_) trip_ = trip;
+    }
+    std::optional<thermal::Trip> trip() {
+        const std::lock_guard lock(trip_mutex_);
+        return trip_;
+    }
+
+private:
+    std::mutex trip_mutex_;
+    std::optional<thermal::Trip> trip_;
 };
 
 // The planning thread.
@@ -112,9 +106,11 @@ Result<bool> drain(Executor& executor, Shared& shared) {
 
 // Until the real-time thread has ended.
 void watch(const StopSignals& signals, Shared& shared, const PrintJob& job,
-           const Inspection& inspection) {
+           const Inspection& inspection, Heating* heating) {
     while (!shared.finished.load()) {
         if (signals.wait_ms(signal_wait_ms)) ++shared.stop_requests;
+        if (heating)
+            if (const auto silent = heating->stage->expire(heat_time_s())) shared.tripped(*silent);
         if (job.progress)
             job.progress({shared.layer.load(), inspection.totals.layers,
                           static_cast<double>(shared.time_ns.load()) / ns_per_s,
@@ -140,25 +136,50 @@ Result<Prepared> prepare(const PrintJob& job) {
     Result<Inspection> inspection = inspect(job.file, job.printer);
     if (!inspection) return inspection.error();
     Prepared prepared{std::move(*inspection), {}};
-    const Status possible = check_demands(prepared.inspection, job.no_heat, prepared.notes);
+    const Status possible =
+        check_demands(prepared.inspection, job.printer, job.no_heat, prepared.notes);
     if (!possible) return possible.error();
     return prepared;
 }
 
+// The heaters' thread, from construction to the end of the print.
+class Tending {
+public:
+    Tending(Heating* heating, Shared& shared) {
+        if (!heating) return;
+        attendant_.emplace(shared.orders, shared.marks, *heating->control);
+        thread_ = std::thread([this, heating, &shared] {
+            tend(*heating->control, *attendant_, shared.finished,
+                 [&](const thermal::Trip& trip) { shared.tripped(trip); });
+            (void)heating->stage->release();
+        });
+    }
+    void join() {
+        if (thread_.joinable()) thread_.join();
+    }
+
+private:
+    std::optional<HeatAttendant> attendant_;
+    std::thread thread_;
+};
+
 Result<PrintReport> run(const PrintJob& job, const Prepared& prepared, gpio::GpioChip& chip,
-                        gpio::Clock& clock) {
+                        gpio::Clock& clock, Heating* heating) {
+    Shared shared;
     Result<EventStream> stream =
-        EventStream::open(job.file, job.printer, prepared.inspection.filament_diameter_mm);
+        EventStream::open(job.file, job.printer, prepared.inspection.filament_diameter_mm,
+                          heating ? &shared.orders : nullptr);
     if (!stream) return stream.error();
     const StopSignals signals;
     PrintReport report;
     report.warnings = prepared.notes;
-    Shared shared;
     lock_memory(report.warnings);
     gpio::TracingClock traced(clock);
-    Executor executor(chip, traced, executor_timing(job.printer), shared.stop_requests);
+    Executor executor(chip, traced, executor_timing(job.printer), shared.stop_requests,
+                      heating ? &shared.marks : nullptr);
     Status planned = Done{};
     Result<bool> executed = true;
+    Tending tending(heating, shared);
     std::thread planner([&] { planned = fill(*stream, shared); });
     std::thread edges([&] {
         take_precedence(report.warnings);
@@ -169,9 +190,11 @@ Result<PrintReport> run(const PrintJob& job, const Prepared& prepared, gpio::Gpi
         if (!released && executed) executed = released.error();
         shared.finished.store(true);
     });
-    watch(signals, shared, job, prepared.inspection);
+    watch(signals, shared, job, prepared.inspection, heating);
     edges.join();
     planner.join();
+    tending.join();
+    if (const auto trip = shared.trip()) return diagnostic_of(*trip);
     if (!executed) return executed.error();
     if (!planned) return planned.error();
     if (!*executed) return stopped(shared);
@@ -179,37 +202,20 @@ Result<PrintReport> run(const PrintJob& job, const Prepared& prepared, gpio::Gpi
     report.stretched_s = static_cast<double>(executor.stretched_ns()) / ns_per_s;
     report.worst_late_ns = executor.worst_late_ns();
     report.writes = executor.writes();
+    report.waited_s = static_cast<double>(executor.waited_ns()) / ns_per_s;
     report.lateness = traced.histogram();
     return report;
 }
 
 }  // namespace
 
-Status check_demands(const Inspection& inspection, bool no_heat, Diagnostics& notes) {
-    const Demands& demands = inspection.demands;
-    if (!demands.hottest.empty()) notes.push_back(note("not heated: " + heat_text(demands)));
-    if (!demands.fans.empty())
-        notes.push_back(note("fans are not switched: no line is known for them"));
-    if (!demands.hottest.empty() && !no_heat)
-        return Diagnostic{
-            Severity::error,
-            ExitStatus::machine,
-            "the file heats " + heat_text(demands) +
-                ", and this version controls no heaters; --no-heat makes the motions cold",
-            {}};
-    if (demands.pauses)
-        return Diagnostic{Severity::error,
-                          ExitStatus::unsupported,
-                          "the file pauses " + std::to_string(demands.pauses) +
-                              " times, and this version cannot be told to go on",
-                          {}};
-    return Done{};
-}
-
-Result<PrintReport> print(const PrintJob& job, gpio::GpioChip& chip, gpio::Clock& clock) {
+Result<PrintReport> print(const PrintJob& job, gpio::GpioChip& chip, gpio::Clock& clock,
+                          Heating* heating) {
     const Result<Prepared> prepared = prepare(job);
     if (!prepared) return prepared.error();
-    return run(job, *prepared, chip, clock);
+    if (!heating && !job.no_heat && !prepared->inspection.demands.hottest.empty())
+        return Diagnostic{Severity::error, ExitStatus::internal, "no heaters were opened", {}};
+    return run(job, *prepared, chip, clock, heating);
 }
 
 Result<PrintReport> print(const PrintJob& job) {
@@ -219,8 +225,15 @@ Result<PrintReport> print(const PrintJob& job) {
     if (!requests) return requests.error();
     const Result<std::unique_ptr<gpio::GpioChip>> chip = gpio::open_gpiod_chip(*requests);
     if (!chip) return chip.error();
+    std::optional<Heating> heating;
+    const Demands& demands = prepared->inspection.demands;
+    if (!job.no_heat && !demands.hottest.empty()) {
+        Result<Heating> opened = open_heating(job.printer);
+        if (!opened) return opened.error();
+        heating.emplace(std::move(*opened));
+    }
     gpio::MonotonicClock clock;
-    return run(job, *prepared, **chip, clock);
+    return run(job, *prepared, **chip, clock, heating ? &*heating : nullptr);
 }
 
 std::string text_of(const PrintReport& report) {
@@ -233,6 +246,10 @@ std::string text_of(const PrintReport& report) {
         static_cast<unsigned long long>(report.writes),
         static_cast<double>(report.worst_late_ns) / ns_per_us);
     std::string text = line;
+    if (report.waited_s > 0) {
+        std::snprintf(line, sizeof line, "  waited %.1f s for temperatures\n", report.waited_s);
+        text += line;
+    }
     for (std::size_t i = 0; i < report.lateness.size(); ++i) {
         if (!report.lateness[i]) continue;
         std::snprintf(line, sizeof line, "  waits less than %9llu us late: %llu\n", 1ULL << i,

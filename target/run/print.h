@@ -4,8 +4,9 @@
 // Contract
 //  1. Nothing moves before inspect() has found the whole file right and check_demands() has found
 //     nothing that this machine cannot do.
-//  2. Heaters are never switched: a file that sets a temperature is refused unless `no_heat` says to
-//     print it cold.
+//  2. Heaters do what the file orders, tended by a thread of their own; with `no_heat` none is touched. When a guard
+//     fires, all heaters are off at once, the head comes to rest, and the guard's message (status machine) is the
+//     result.
 //  3. However the print ends (done, error, request), all lines are inactive and released before
 //     print() returns.
 //  4. The first SIGINT, SIGTERM or SIGHUP brings the head to rest on its path, a second one stops at
@@ -18,6 +19,7 @@
 
 #include "target/gpio/clock.h"
 #include "target/gpio/gpio_chip.h"
+#include "target/run/heating.h"
 #include "target/run/simulate.h"
 
 namespace lyr::run {
@@ -34,18 +36,17 @@ struct PrintReport {
     double stretched_s = 0;  // how much longer it took
     std::int64_t worst_late_ns = 0;
     std::uint64_t writes = 0;
+    double waited_s = 0;  // for temperatures
     // How late waits ended; the buckets are those of TracingClock.
     std::array<std::uint64_t, gpio::TracingClock::buckets> lateness{};
     Diagnostics warnings;
 };
 
-// What the file asks beside motion and the machine cannot do: an error, or notes on what is passed over.
-Status check_demands(const Inspection& inspection, bool no_heat, Diagnostics& notes);
-
 // On the lines that the printer's file names.
 Result<PrintReport> print(const PrintJob& job);
-// On any lines and clock.
-Result<PrintReport> print(const PrintJob& job, gpio::GpioChip& chip, gpio::Clock& clock);
+// On any lines and clock, and any heaters; none: nothing is heated.
+Result<PrintReport> print(const PrintJob& job, gpio::GpioChip& chip, gpio::Clock& clock,
+                          Heating* heating = nullptr);
 
 std::string text_of(const PrintReport& report);
 

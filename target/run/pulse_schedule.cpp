@@ -27,7 +27,12 @@ void PulseSchedule::begin(std::int64_t delay_ns, std::vector<LineEvent>& events)
 }
 
 void PulseSchedule::append(std::span<const Step> steps, std::vector<LineEvent>& events) {
-    for (const Step& next : steps) step(next, events);
+    for (const Step& next : steps) {
+        if (next.axis == mark_axis)
+            mark(next, events);
+        else
+            step(next, events);
+    }
 }
 
 void PulseSchedule::step(const Step& step, std::vector<LineEvent>& events) {
@@ -41,15 +46,37 @@ void PulseSchedule::step(const Step& step, std::vector<LineEvent>& events) {
         insert(turn_ns, direction_bit(step.axis));
         axis.positive = step.positive;
     }
-    if (rise_ns > wanted_ns) {
-        shift_ns_ += rise_ns - wanted_ns;
-        shifts_.push_back({rise_ns, shift_ns_});
-    }
+    delay(wanted_ns, rise_ns);
     axis.rise_ns = rise_ns;
     axis.fall_ns = rise_ns + timing_.high_ns;
     insert(axis.rise_ns, step_bit(step.axis));
     insert(axis.fall_ns, step_bit(step.axis));
     emit_before(rise_ns - timing_.direction_setup_ns, events);
+}
+
+void PulseSchedule::delay(std::int64_t wanted_ns, std::int64_t due_ns) {
+    if (due_ns <= wanted_ns) return;
+    shift_ns_ += due_ns - wanted_ns;
+    shifts_.push_back({due_ns, shift_ns_});
+}
+
+std::int64_t PulseSchedule::quiet_ns(std::int64_t from_ns) const {
+    std::int64_t quiet_ns = from_ns;
+    for (const AxisState& axis : axes_)
+        quiet_ns = std::max({quiet_ns, axis.fall_ns, axis.rise_ns + timing_.direction_hold_ns});
+    return quiet_ns;
+}
+
+void PulseSchedule::mark(const Step& step, std::vector<LineEvent>& events) {
+    const std::int64_t wanted_ns = std::max<std::int64_t>(0, step.time_ns + shift_ns_);
+    const bool is_gate = step.positive;
+    std::int64_t time_ns = std::max(wanted_ns, last_mark_ns_ + 1);
+    // What falls at the gate itself would be written after it.
+    if (is_gate) time_ns = std::max(time_ns, quiet_ns(0) + 1);
+    delay(wanted_ns, time_ns);
+    last_mark_ns_ = time_ns;
+    insert(time_ns, is_gate ? all_mark_bits : mark_bit);
+    emit_before(time_ns - timing_.direction_setup_ns, events);
 }
 
 void PulseSchedule::insert(std::int64_t time_ns, gpio::LineMask toggled) {
@@ -71,12 +98,10 @@ void PulseSchedule::emit_before(std::int64_t time_ns, std::vector<LineEvent>& ev
 }
 
 void PulseSchedule::finish(std::int64_t end_ns, std::vector<LineEvent>& events) {
-    std::int64_t last_ns = end_ns + shift_ns_;
-    for (const AxisState& axis : axes_)
-        last_ns = std::max({last_ns, axis.fall_ns, axis.rise_ns + timing_.direction_hold_ns});
+    const std::int64_t last_ns = std::max(quiet_ns(end_ns + shift_ns_), last_mark_ns_ + 1);
     emit_before(last_ns, events);
     open_.clear();
-    levels_ = 0;
+    levels_ &= all_mark_bits;
     events.push_back({last_ns, levels_});
 }
 

@@ -8,7 +8,9 @@
 //     from direction_setup_ns before a rising edge to direction_hold_ns after it.
 //  3. The shift grows by what a step must be delayed for 2 and then delays everything after it, on all
 //     axes alike, so that the path keeps its shape. It never shrinks. Every growth is listed.
-//  4. Events come out in order of time, one for all edges of the same nanosecond. Each carries the
+//  4. A mark stands at its time, later than every edge of steps before it if it is a gate, and no two at the same
+//     nanosecond.
+//  5. Events come out in order of time, one for all edges of the same nanosecond. Each carries the
 //     levels of all lines.
 
 #pragma once
@@ -23,6 +25,9 @@
 #include "target/run/line_layout.h"
 
 namespace lyr::run {
+
+// In place of an axis: no step but a mark; `positive` then says whether it is a gate.
+inline constexpr std::uint8_t mark_axis = 255;
 
 struct Step {
     std::int64_t time_ns = 0;
@@ -70,12 +75,17 @@ private:
     };
 
     void step(const Step& step, std::vector<LineEvent>& events);
+    void mark(const Step& step, std::vector<LineEvent>& events);
+    void delay(std::int64_t wanted_ns, std::int64_t due_ns);
+    // When all edges of the steps so far are over and drivers have taken them.
+    std::int64_t quiet_ns(std::int64_t from_ns) const;
     void insert(std::int64_t time_ns, gpio::LineMask toggled);
     void emit_before(std::int64_t time_ns, std::vector<LineEvent>& events);
 
     config::PulseTiming timing_;
     gpio::LineMask levels_;
     std::int64_t shift_ns_ = 0;
+    std::int64_t last_mark_ns_ = -1;
     std::array<AxisState, config::axis_count> axes_;
     std::vector<Edge> open_;  // in order of time; a few edges an axis at most
     std::vector<Shift> shifts_;

@@ -77,6 +77,20 @@ std::optional<std::int64_t> shortest(const SimulationReport& report,
     return result;
 }
 
+void append_heat(std::string& text, const SimulationReport& report) {
+    if (report.heat.empty()) return;
+    text += "  heated      ";
+    for (const HeatFigures& heat : report.heat) {
+        const double power_w = report.printer.heaters[heat.heater]->model.power_w;
+        constexpr double j_per_wh = 3'600;
+        append(text, "%s %s to %.1f °C at most with %.1f Wh",
+               &heat == &report.heat.front() ? "" : ",",
+               std::string(config::heater_names[heat.heater]).c_str(), heat.highest_c,
+               heat.full_power_s * power_w / j_per_wh);
+    }
+    text += '\n';
+}
+
 struct Spacing {
     const char* name;
     const char* json_key;
@@ -165,9 +179,12 @@ std::string text_of(const SimulationReport& report) {
     if (report.delayed_ns)
         append(text, ", of it %.3f us for the drivers' edges",
                static_cast<double>(report.delayed_ns) / ns_per_us);
+    if (report.waited_s > 0)
+        text += ", and " + duration_text(report.waited_s) + " of waiting for temperatures";
     append(text, "\n  extruded     %.3f mm with %.3f mm of %.2f mm filament\n", totals.extruded_mm,
            totals.filament_mm, report.inspection.filament_diameter_mm);
     append(text, "  travelled    %.3f mm\n", totals.travelled_mm);
+    append_heat(text, report);
     append_axes(text, report);
     text += "  pulses      ";
     for (const Spacing& spacing : spacings)
@@ -196,6 +213,13 @@ std::string json_of(const SimulationReport& report) {
     append(text, ",\"layers\":%u,\"motions\":%llu,\"print_time_s\":%.9f,\"delayed_ns\":%lld",
            totals.layers, static_cast<unsigned long long>(totals.motions), report.print_time_s,
            static_cast<long long>(report.delayed_ns));
+    append(text, ",\"waited_s\":%.3f,\"heaters\":{", report.waited_s);
+    for (const HeatFigures& heat : report.heat)
+        append(text, "%s\"%s\":{\"highest_c\":%.3f,\"full_power_s\":%.3f}",
+               &heat == &report.heat.front() ? "" : ",",
+               std::string(config::heater_names[heat.heater]).c_str(), heat.highest_c,
+               heat.full_power_s);
+    text += '}';
     append(text, ",\"extruded_mm\":%.6f,\"travelled_mm\":%.6f,\"filament_mm\":%.6f",
            totals.extruded_mm, totals.travelled_mm, totals.filament_mm);
     append(text, ",\"deviation_steps\":%.9f,\"deviation_mm\":%.9f,\"within_half_step\":%s",

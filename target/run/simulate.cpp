@@ -4,11 +4,14 @@
 #include "target/run/simulate.h"
 
 #include <algorithm>
+#include <cstdio>
 
 #include "target/gpio/tracing_chip.h"
+#include "target/run/demands.h"
 #include "target/run/event_stream.h"
 #include "target/run/executor.h"
-#include "target/run/print.h"
+#include "target/run/heating.h"
+#include "target/run/simulated_clock.h"
 #include "target/run/step_checks.h"
 
 namespace lyr::run {
@@ -23,20 +26,33 @@ Diagnostic stopped() {
     return {Severity::error, ExitStatus::stopped, "the simulation was stopped on request", {}};
 }
 
+Diagnostic tripped(const thermal::SimulatedHeat& heat, std::uint32_t layer) {
+    char text[64];
+    std::snprintf(text, sizeof text, "after %.1f s, in layer %u: ", *heat.tripped_s(), layer);
+    Diagnostic error = diagnostic_of(*heat.control().trip());
+    error.message = text + error.message;
+    return error;
+}
+
 // Everything that a simulation is made of, in the order in which the steps pass through it.
 class Simulation {
 public:
+    // `orders` is none, or where the stream puts what is to be heated.
     Simulation(const SimulationJob& job, const Inspection& inspection, EventStream stream,
-               FilePath file)
+               FilePath file, OrderQueue* orders)
         : job_(job),
           inspection_(inspection),
+          heats_(orders != nullptr),
+          heat_(job.printer, heats_ ? job.faults : std::vector<thermal::Fault>()),
+          attendant_(orders ? *orders : no_orders_, marks_, heat_.control()),
+          clock_(heat_, attendant_, stop_),
           stream_(std::move(stream)),
           file_(std::move(file)),
           checks_(job.printer, [this](PathCurve& curve) { return file_.next(curve); }),
           decoder_([this](const DecodedStep& step) { checks_.step(step); }),
           layout_(line_layout(job.printer)),
           mock_(layout_.names.size(), clock_,
-                [this](const gpio::LineWrite& write) { decoder_.write(write); }) {}
+                [this](const gpio::LineWrite& write) { decode(write); }) {}
 
     // `trace` is none, or the file to write the wave to.
     Status run(ReplaceFile* trace);
@@ -44,32 +60,47 @@ public:
 
 private:
     Status pump(Executor& executor, ReplaceFile* trace);
+    // Waits for temperatures are no part of the plan's time.
+    void decode(gpio::LineWrite write) {
+        write.time_ns -= executor_ ? executor_->waited_ns() : 0;
+        decoder_.write(write);
+    }
     bool asked_to_stop(const Executor& executor) const;
 
     const SimulationJob& job_;
     const Inspection& inspection_;
+    bool heats_;
+    OrderQueue no_orders_;
+    Marks marks_;
+    StopRequests stop_{0};
+    thermal::SimulatedHeat heat_;
+    HeatAttendant attendant_;
+    SimulatedClock clock_;
+    const Executor* executor_ = nullptr;
     EventStream stream_;
     FilePath file_;
     StepChecks checks_;
     PulseDecoder decoder_;
     LineLayout layout_;
-    gpio::VirtualClock clock_;
     gpio::MockChip mock_;
-    double print_time_s_ = 0;
+    double print_time_s_ = 0, waited_s_ = 0;
 };
 
 Status Simulation::run(ReplaceFile* trace) {
     std::optional<gpio::TracingChip> tracing;
     if (trace) tracing.emplace(mock_, clock_, layout_.names, *trace);
     gpio::GpioChip& chip = tracing ? static_cast<gpio::GpioChip&>(*tracing) : mock_;
-    const StopRequests none{0};
-    Executor executor(chip, clock_, executor_timing(job_.printer), none);
+    Executor executor(chip, clock_, executor_timing(job_.printer), stop_,
+                      heats_ ? &marks_ : nullptr);
+    executor_ = &executor;
     Status pumped = pump(executor, trace);
     print_time_s_ = static_cast<double>(executor.time_ns()) / ns_per_s;
+    waited_s_ = static_cast<double>(executor.waited_ns()) / ns_per_s;
     if (!pumped) return pumped;
     if (Status followed = checks_.finish(decoder_.positions()); !followed) return followed;
     Status released = chip.release();
     if (tracing) tracing->finish();
+    executor_ = nullptr;
     return released;
 }
 
@@ -82,6 +113,7 @@ Status Simulation::pump(Executor& executor, ReplaceFile* trace) {
         checks_.expect(stream_.steps().moves(), stream_.schedule().take_shifts());
         const Result<bool> executed = executor.execute(events);
         if (!executed) return executed.error();
+        if (!*executed) return tripped(heat_, stream_.steps().layer());
         if (!*more) return Done{};
         if (batch % batches_between_questions != 0) continue;
         if (trace && trace->failed()) return trace->flush();
@@ -109,17 +141,39 @@ SimulationReport Simulation::report() const {
     report.writes = decoder_.writes();
     report.path = checks_.off_file();
     report.planned_steps = checks_.off_plan();
+    report.waited_s = waited_s_;
+    for (std::size_t i = 0; i < config::heater_count; ++i) {
+        const thermal::HeaterStatus* status = heat_.control().status(i);
+        if (heats_ && status && status->on_s > 0)
+            report.heat.push_back({i, status->highest_c, status->on_s});
+    }
     return report;
 }
 
-// What a print would refuse is worth knowing, but no reason not to simulate.
-Diagnostics notes_of(const Inspection& inspection) {
+struct Heed {
+    bool heats = false;
     Diagnostics notes;
-    if (const Status possible = check_demands(inspection, true, notes); !possible) {
-        notes.push_back(possible.error());
-        notes.back().severity = Severity::warning;
-    }
-    return notes;
+};
+
+// What a print would refuse is worth knowing, but no reason not to simulate: the motions are made cold then.
+Heed heed(const Inspection& inspection, const SimulationJob& job) {
+    Heed result;
+    const bool asked = !inspection.demands.hottest.empty();
+    const auto possible = [&](bool no_heat) {
+        result.notes.clear();
+        const Status checked = check_demands(inspection, job.printer, no_heat, result.notes);
+        if (checked) return true;
+        result.notes.push_back(checked.error());
+        result.notes.back().severity = Severity::warning;
+        return checked.error().status == ExitStatus::unsupported;
+    };
+    result.heats = asked && !job.no_heat && possible(false);
+    if (result.heats) return result;
+    Diagnostics why;
+    if (asked && !job.no_heat) why.push_back(result.notes.back());
+    (void)possible(true);
+    result.notes.insert(result.notes.end(), why.begin(), why.end());
+    return result;
 }
 
 }  // namespace
@@ -134,17 +188,20 @@ Result<SimulationReport> simulate(const SimulationJob& job) {
     const Result<Inspection> inspection = inspect(job.file, job.printer);
     if (!inspection) return inspection.error();
     const double diameter_mm = inspection->filament_diameter_mm;
-    Result<EventStream> stream = EventStream::open(job.file, job.printer, diameter_mm);
+    Heed heeded = heed(*inspection, job);
+    OrderQueue orders;
+    OrderQueue* wanted = heeded.heats ? &orders : nullptr;
+    Result<EventStream> stream = EventStream::open(job.file, job.printer, diameter_mm, wanted);
     if (!stream) return stream.error();
     Result<format::Reader> reader = open_file(job.file);
     if (!reader) return reader.error();
     Simulation simulation(job, *inspection, std::move(*stream),
-                          FilePath(std::move(*reader), job.printer.start_mm, diameter_mm));
+                          FilePath(std::move(*reader), job.printer.start_mm, diameter_mm), wanted);
     if (const Status run = simulation.run(trace ? &*trace : nullptr); !run) return run.error();
     if (trace)
         if (const Status written = trace->commit(); !written) return written.error();
     SimulationReport report = simulation.report();
-    report.notes = notes_of(*inspection);
+    report.notes = std::move(heeded.notes);
     return report;
 }
 

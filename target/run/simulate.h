@@ -11,7 +11,10 @@
 //  3. within_limits() says that no axis ever deviated, in either sense, by more than half a step, what the
 //     axis moves at its highest speed in the nanosecond that times are rounded to, and a millionth of a
 //     step for rounding together; and that no pulse was shorter than the printer's file asks.
-//  4. With a trace path, the lines are written there as a wave file, which appears whole or not at all.
+//  4. Heaters are models behind mock lines (thermal/simulated_heat.h), unless `no_heat`, or the file asks for none,
+//     or the printer cannot do what it asks, which a note then tells. `faults` break them at their times; a guard
+//     that fires ends the simulation with its message (status machine) and the time.
+//  5. With a trace path, the lines are written there as a wave file, which appears whole or not at all.
 
 #pragma once
 
@@ -23,6 +26,7 @@
 #include "target/run/inspect.h"
 #include "target/run/path_check.h"
 #include "target/run/pulse_decoder.h"
+#include "target/thermal/faults.h"
 
 namespace lyr::run {
 
@@ -42,6 +46,15 @@ struct SimulationJob {
     std::optional<std::string> trace;
     ProgressSink progress;
     StopQuestion stop;
+    bool no_heat = false;
+    std::vector<thermal::Fault> faults{};
+};
+
+// What a heater did.
+struct HeatFigures {
+    std::size_t heater = 0;   // of config
+    double highest_c = 0;     // that was measured
+    double full_power_s = 0;  // time at full power that its power adds up to
 };
 
 struct SimulationReport {
@@ -53,9 +66,11 @@ struct SimulationReport {
     std::array<PulseFigures, config::axis_count> pulses;
     StepPositions positions{};  // at the end, from the start of the print
     std::uint64_t writes = 0;
-    Deviation path;              // 2a
-    AxisValues planned_steps{};  // 2b
-    Diagnostics notes;           // what the file asks and a simulation passes over
+    Deviation path;                 // 2a
+    AxisValues planned_steps{};     // 2b
+    double waited_s = 0;            // for temperatures, beside the print time
+    std::vector<HeatFigures> heat;  // of the heaters that had a target
+    Diagnostics notes;              // what the file asks and a simulation passes over
 
     double worst_steps() const;
     bool within_limits() const;

@@ -6,9 +6,12 @@
 //  2. Memory is bounded: it does not grow with the file.
 //  3. After next(), moves() are the planned moves that the batch has begun, in order; they belong to the
 //     steps from here on.
+//  4. With a queue, each order for heaters and fans is put there, and a mark among the steps where the motion has
+//     come so far; for one that waits, the motion stops first. Without, orders are left out.
 
 #pragma once
 
+#include <deque>
 #include <string>
 #include <vector>
 
@@ -22,7 +25,7 @@ namespace lyr::run {
 class StepStream {
 public:
     static Result<StepStream> open(const std::string& path, const config::Printer& printer,
-                                   double filament_diameter_mm);
+                                   double filament_diameter_mm, OrderQueue* orders = nullptr);
 
     // Appends the next steps; false: these were the last.
     Result<bool> next(std::vector<Step>& steps);
@@ -34,11 +37,23 @@ public:
     std::uint32_t layer() const { return layer_; }
 
 private:
+    // An order and the number of the move that it stands before.
+    struct Waiting {
+        std::uint64_t before_move;
+        HeatOrder order;
+    };
+
     StepStream(std::string path, Interpreter interpreter, motion::Planner planner,
-               MotorSteps generator);
+               MotorSteps generator, OrderQueue* orders);
 
     Status plan();
+    Status plan(const motion::Move& move);
+    Status plan(const HeatOrder& order);
+    // Appends the next steps of what is known, at most so many; how many events they were.
+    std::size_t take(std::size_t most, std::vector<Step>& steps);
     bool finish(std::vector<Step>& steps);
+    // The orders that stand before the move that begins.
+    void give_orders(std::int64_t time_ns, std::vector<Step>& steps);
 
     std::string path_;  // for messages
     Interpreter interpreter_;
@@ -46,9 +61,13 @@ private:
     MotorSteps generator_;
     std::optional<Instruction> held_;  // for when the planner has room again
     bool read_all_ = false;
+    OrderQueue* orders_;
+    std::deque<Waiting> waiting_;
+    std::uint64_t pushed_ = 0, popped_ = 0;  // moves
     std::vector<motion::PlannedMove> moves_;
     std::vector<motion::StepEvent> events_;
     std::uint32_t layer_ = 0;
+    std::int64_t last_ns_ = 0;  // of the steps so far
 };
 
 }  // namespace lyr::run

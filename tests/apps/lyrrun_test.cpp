@@ -55,8 +55,10 @@ TEST_CASE("lyrrun: what is wrong comes as one line and with its status") {
     check_failure(lyrrun(good + " --trace x.vcd --printer x.toml"), 2, "--simulate");
     check_failure(lyrrun(good + " --simulate --printer /nonexistent.toml"), 3, "/nonexistent.toml");
     check_failure(lyrrun(good + " --simulate --trace /nonexistent/out.vcd"), 6, "/nonexistent");
-    check_failure(lyrrun(good + " --printer " LYR_FIXTURES "/printers/generic.toml"), 7,
+    check_failure(lyrrun(good + " --no-heat --printer " LYR_FIXTURES "/printers/generic.toml"), 7,
                   "axis.x.step");
+    check_failure(lyrrun(good + " --printer " LYR_FIXTURES "/printers/generic.toml"), 7,
+                  "heater.tool.min_extrude_c");
 }
 
 TEST_CASE("lyrrun: a file that is cut short names the last whole layer") {
@@ -93,6 +95,75 @@ TEST_CASE("lyrrun: SIGTERM ends a simulation with status 8 and without a half-wr
         CHECK(text_of(folder / "trace.vcd") == "old");
         CHECK(text_of(folder / "err") == "lyrrun: error: stopped on request\n");
     }
+}
+
+namespace {
+
+// Two layers of PLA.
+std::string write_heated(const std::string& name) {
+    return write_print(name, {draw_square, draw_arcs}, {}, [](format::LayerState& state) {
+        state.temperatures.push_back({{format::HeaterKind::bed, 0}, 60});
+        state.temperatures.push_back({{format::HeaterKind::tool, 0}, 210});
+    });
+}
+
+}  // namespace
+
+TEST_CASE("lyrrun: a simulation heats, waits and tells so; with --no-heat it does not") {
+    const std::string file = write_heated("heated");
+    const Ended heated = lyrrun(file + " --simulate");
+    CHECK(heated.status == 0);
+    CHECK(heated.err.empty());
+    CHECK(heated.out.find("waiting for temperatures") != std::string::npos);
+    CHECK(heated.out.find("  heated       tool to 21") != std::string::npos);
+    const Ended cold = lyrrun(file + " --simulate --no-heat");
+    CHECK(cold.status == 0);
+    CHECK(cold.err.find("not heated: ") != std::string::npos);
+    CHECK(cold.out.find("  heated") == std::string::npos);
+}
+
+TEST_CASE("lyrrun: --faults breaks the simulation, and the guard's message is the result") {
+    const Folder folder("lyrrun-faults");
+    fs::copy_file(write_heated("faults"), folder / "a.lyr");
+    folder.write("faults.txt", "# after half a minute\n30 open tool\n");
+    check_failure(folder.run("lyrrun a.lyr --simulate --faults faults.txt"), 7,
+                  "after 30.3 s, in layer 1: heater tool: ");
+    check_failure(folder.run("echo 5 silent | lyrrun a.lyr --simulate --faults -"), 7, "silent");
+    folder.write("bad.txt", "5 open tool\n5 opne tool\n");
+    check_failure(folder.run("lyrrun a.lyr --simulate --faults bad.txt"), 3, "bad.txt:2");
+    check_failure(folder.run("lyrrun a.lyr --simulate --faults none.txt"), 3, "none.txt");
+    check_failure(folder.run("lyrrun a.lyr --faults faults.txt --printer p.toml"), 2, "--simulate");
+    check_failure(folder.run("lyrrun a.lyr --simulate --no-heat --faults faults.txt"), 2,
+                  "--no-heat");
+    check_failure(folder.run("lyrrun a.lyr --simulate --faults - --printer - </dev/null"), 2,
+                  "standard input");
+}
+
+TEST_CASE(
+    "lyrrun: --tune gives the lines of printer.toml, and a printer that has them takes them") {
+    const Folder folder("lyrrun-tune");
+    const Ended tuned = folder.run("lyrrun --tune tool=210 --simulate");
+    CHECK(tuned.status == 0);
+    CHECK(tuned.err.empty());
+    const std::size_t from = tuned.out.find("[heater.tool]");
+    REQUIRE(from != std::string::npos);
+    const std::string lines = tuned.out.substr(from, tuned.out.find("  or, brisker") - from);
+    std::string printer = text_of(fs::path(LYR_FIXTURES) / "printers/generic.toml");
+    printer.replace(printer.find("[heater.tool]"), 13, lines);
+    folder.write("p.toml", printer);
+    fs::copy_file(write_heated("tuned"), folder / "a.lyr");
+    CHECK(folder.run("lyrrun a.lyr --simulate --printer p.toml").status == 0);
+    check_failure(folder.run("lyrrun --tune tool=210"), 2, "--printer");
+    check_failure(folder.run("lyrrun --tune tool --simulate"), 2, "tool, bed or chamber");
+    check_failure(folder.run("lyrrun --tune nose=20 --simulate"), 2, "tool, bed or chamber");
+    check_failure(folder.run("lyrrun --tune tool=nan --simulate"), 2, "tool, bed or chamber");
+    check_failure(folder.run("lyrrun a.lyr --tune tool=210 --simulate"), 2, "without a print");
+    check_failure(folder.run("lyrrun --tune chamber=40 --simulate"), 7, "no heater.chamber");
+    check_failure(folder.run("lyrrun --tune tool=274 --simulate"), 7, "range_c");
+    check_failure(folder.run("lyrrun --tune bed=60 --printer p.toml"), 7,
+                  "heater.tool.sensor.file");
+    check_failure(folder.run("echo 10 no_power bed | lyrrun --tune bed=60 --simulate --faults -"),
+                  7, "heater bed");
 }
 
 TEST_CASE("lyrrun: a trace never takes the place of the print or of the printer's file") {

@@ -226,6 +226,59 @@ TEST_CASE("printer 1, 3: the sample files are right, and generic.toml is the bui
         CHECK(a.max_mm == b.max_mm);
         CHECK(a.invert == b.invert);
     }
+    for (std::size_t i = 0; i < heater_count; ++i)
+        CHECK(read->heaters[i].has_value() == built_in.heaters[i].has_value());
+    CHECK(read->part_fan.has_value() == built_in.part_fan.has_value());
+}
+
+TEST_CASE("printer 2: heaters have the defaults of their kind, and each key overrides its own") {
+    const auto with = [](const std::string& text) {
+        return parse_printer(good + '\n' + text, "heat.toml");
+    };
+    const Result<Printer> none = with("");
+    REQUIRE(none.ok());
+    for (const auto& heater : none->heaters) CHECK_FALSE(heater);
+    const Result<Printer> bed = with("[heater.bed]\nguard.gain_time_s = 90\noutput = \"BED\"\n");
+    REQUIRE_MESSAGE(bed.ok(), (bed.ok() ? "" : to_string(bed.error())));
+    REQUIRE(bed->heaters[heater_bed]);
+    CHECK_FALSE(bed->heaters[heater_tool]);
+    CHECK(bed->heaters[heater_bed]->guard.gain_time_s == 90);
+    CHECK(bed->heaters[heater_bed]->guard.stray_c == 2);
+    CHECK(bed->heaters[heater_bed]->guard.stray_time_s == 20);
+    REQUIRE(bed->heaters[heater_bed]->output);
+    CHECK_FALSE(bed->heaters[heater_bed]->output->chip.empty());
+    const Heater tool = default_heater(heater_tool);
+    CHECK(tool.guard.gain_c == 2);
+    CHECK(tool.guard.gain_time_s == 20);
+    CHECK(tool.guard.stray_c == 4);
+    CHECK(tool.guard.stray_time_s == 40);
+    CHECK(default_heater(heater_bed).guard.gain_time_s == 60);
+}
+
+TEST_CASE("printer 2: what is wrong with heat is told with its key") {
+    const auto complaint = [](const std::string& text) {
+        const Result<Printer> refused = parse_printer(good + '\n' + text, "heat.toml");
+        REQUIRE_FALSE(refused.ok());
+        CHECK(refused.error().where.line > 0);
+        return refused.error().message;
+    };
+    const auto names = [&](const std::string& text, const char* part) {
+        CHECK_MESSAGE(complaint(text).find(part) != std::string::npos, complaint(text));
+    };
+    names("[heater.bde]\nkp = 1\n", "did you mean `bed`");
+    names("[heater.bed]\nsensr.kind = 1\n", "did you mean `sensor`");
+    names("[heater.bed]\nsensor.kind = \"pt100\"\n", "\"pt1000\"");
+    names("[heater.bed]\nrange_c = [100, 20]\n", "heater.bed.range_c");
+    names("[heater.bed]\nmin_extrude_c = 170\n", "min_extrude_c");
+    names("[heater.bed]\nkp = nan\n", "heater.bed.kp");
+    names("[heater.bed]\ncycle_s = 0\n", "0.2");
+    names("[heater.tool]\nsensor.kind = \"steinhart_hart\"\n", "needs 3 points");
+    names("[heater.tool]\nsensor.kind = \"table\"\n", "at least 2");
+    names("[heater.tool]\nsensor.points = [[0, 100], [50, 100]]\n", "resistances falling");
+    names("[heater.tool]\nsensor.points = [[0, 100], [50]]\n", "pairs");
+    names("[heater.tool]\noutput = 5\npwm = \"/sys/x\"\n", "is given too");
+    names("[heater.tool]\noutput = 77\n[fan.part]\noutput = 77\n",
+          "already used by heater.tool.output");
 }
 
 TEST_CASE("printer: files that are missing, folders or far too large are refused by name") {

@@ -66,7 +66,8 @@ TEST_CASE("simulate 3: deviation, short pulses and figures that are no numbers f
     CHECK_FALSE(bad.within_limits());
 }
 
-TEST_CASE("simulate 3: the limit is half a step, a nanosecond at full speed and a millionth of a step") {
+TEST_CASE(
+    "simulate 3: the limit is half a step, a nanosecond at full speed and a millionth of a step") {
     SimulationReport report;
     report.printer = config::generic_printer();
     for (std::size_t i = 0; i < config::axis_count; ++i) {

@@ -47,10 +47,8 @@ PathCurve arc(const AxisValues& from_mm, double cx, double cy, double sweep_rad,
     return curve;
 }
 
-// Fine enough that no two steps of one axis fall between two samples.
-constexpr int samples = 200'000;
-
-std::vector<TestStep> perfect_steps(const std::vector<PathCurve>& curves) {
+// With samples fine enough that no two steps of one axis fall between two of them.
+std::vector<TestStep> perfect_steps(const std::vector<PathCurve>& curves, int samples = 200'000) {
     std::vector<TestStep> steps;
     StepPositions at{};
     for (const PathCurve& curve : curves)
@@ -295,6 +293,89 @@ TEST_CASE(
                     CHECK(check(curves, fewer).worst_steps > 0.9);
                 }
             }
+}
+
+namespace {
+
+// Of curves of a millimetre.
+constexpr int few_samples = 40'000;
+
+// Ends of lines, extremes and starts of arcs lie on steps and on middles, as coordinates of whole micrometres do on a
+// machine of 100 or 500 steps/mm: lines run along middles, arcs touch them, circles begin where they touch.
+std::vector<PathCurve> tour_on_middles(std::uint32_t seed) {
+    std::mt19937 random(seed);
+    const auto below = [&](int count) {
+        return static_cast<int>(random() % static_cast<unsigned>(count));
+    };
+    // 0.025 mm are 2 steps of x and 2.5 of y.
+    const auto coordinate = [&](double steps_mm) { return 0.5 * below(80) / steps_mm; };
+    std::vector<PathCurve> curves;
+    AxisValues at = origin_mm;
+    const auto go = [&](const AxisValues& to) {
+        if (to != at) curves.push_back(line(at, to));
+        at = to;
+    };
+    for (int i = 0; i < 25; ++i) {
+        const double radius_mm = 0.025 * (1 + below(12));
+        const double turn = below(2) ? 1 : -1, way = below(2) ? 1 : -1;
+        const bool along_x = below(2) == 0;
+        const double cx = at[0] + (along_x ? way * radius_mm : 0);
+        const double cy = at[1] + (along_x ? 0 : way * radius_mm);
+        switch (below(4)) {
+            case 0:
+                go({coordinate(80), coordinate(100), at[2], at[3] + 0.02});
+                break;
+            case 1: {
+                const AxisValues from = at;
+                go({along_x ? coordinate(80) : at[0], along_x ? at[1] : coordinate(100), at[2],
+                    at[3]});
+                if (below(2)) go(from);
+                break;
+            }
+            default: {
+                const double sweep = turn * pi / 2 * (1 + below(4));
+                curves.push_back(arc(at, cx, cy, sweep, 0, 0.01));
+                // Where it ends on the grid, but for rounding.
+                AxisValues& end = curves.back().to_mm;
+                end[0] = std::round(end[0] * 160) / 160;
+                end[1] = std::round(end[1] * 200) / 200;
+                at = end;
+            }
+        }
+    }
+    // Where no middle is near, so that every step counts.
+    go({1, 1, at[2], at[3]});
+    return curves;
+}
+
+}  // namespace
+
+TEST_CASE("path check 3: lines along middles and arcs that touch them are followed either way") {
+    for (std::uint32_t seed = 1; seed <= 15; ++seed) {
+        CAPTURE(seed);
+        const std::vector<PathCurve> curves = tour_on_middles(seed);
+        CHECK(check(curves, perfect_steps(curves, few_samples)).worst_steps < 0.51);
+    }
+}
+
+TEST_CASE("path check 2: among lines along middles and touches wrong steps are still found") {
+    std::mt19937 random(7);
+    for (std::uint32_t seed = 1; seed <= 15; ++seed) {
+        const std::vector<PathCurve> curves = tour_on_middles(seed);
+        const std::vector<TestStep> perfect = perfect_steps(curves, few_samples);
+        for (int trial = 0; trial < 12; ++trial) {
+            std::vector<TestStep> steps = perfect;
+            const std::size_t at = random() % steps.size();
+            CAPTURE(seed);
+            CAPTURE(at);
+            CAPTURE(trial);
+            const auto place = steps.begin() + static_cast<std::ptrdiff_t>(at);
+            if (trial % 3 == 0) steps.erase(place);
+            if (trial % 3 == 1) steps.insert(place, *place);
+            if (trial % 3 == 2) place->positive = !place->positive;
+            CHECK(check(curves, steps).worst_steps > 0.9);
+        }
+    }
 }
 
 TEST_CASE("path check: an error of the file ends it and is kept") {

@@ -25,6 +25,7 @@ namespace {
 config::Printer patient_printer() {
     config::Printer printer = config::generic_printer();
     printer.pulse.late_limit_ns = 10'000'000'000;
+    printer.heaters = {};
     return printer;
 }
 

@@ -197,15 +197,19 @@ TEST_CASE("simulate: without a trace nothing but the report differs from a run w
     std::filesystem::remove(trace);
 }
 
-TEST_CASE("simulate: temperatures, fans and pauses are passed over with a note each") {
+TEST_CASE(
+    "simulate: temperatures, fans and pauses are passed over with a note each, if they must") {
     const Drawing drawing = [](const Pen& pen) {
         pen.layer.temperature({format::HeaterKind::tool, 0}, 230, true);
         pen.layer.fan(0, 0.5);
         draw_square(pen);
         pen.layer.pause(format::PauseReason::user);
     };
-    const SimulationReport report = simulated(write_print("notes", {drawing}));
-    const std::string json = json_of(report);
+    const std::string file = write_print("notes", {drawing});
+    const Result<SimulationReport> report =
+        simulate({file, config::generic_printer(), {}, {}, {}, true});
+    REQUIRE(report.ok());
+    const std::string json = json_of(*report);
     CHECK(json.find("tool 0 to 230") != std::string::npos);
     CHECK(json.find("fans") != std::string::npos);
     CHECK(json.find("pauses") != std::string::npos);

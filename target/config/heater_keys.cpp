@@ -1,0 +1,169 @@
+// A heater is there as soon as a key of its section is; until then it has no defaults either.
+
+#include <algorithm>
+
+#include "target/config/key_rules.h"
+
+namespace lyr::config {
+namespace {
+
+constexpr Range temperatures_c{-60, 1'000};
+constexpr Range resistances_ohm{0.1, 1e8};
+// A slow PWM answers within this; the sampling is a tenth of the shortest.
+constexpr Range cycles_s{0.2, 30};
+constexpr Range times_s{1, 3'600};
+
+Heater& heater_of(Draft& draft, std::size_t number) {
+    std::optional<Heater>& heater = draft.printer.heaters[number];
+    if (!heater) heater = default_heater(number);
+    return *heater;
+}
+
+Fan& fan_of(Draft& draft) {
+    std::optional<Fan>& fan = draft.printer.part_fan;
+    if (!fan) fan.emplace();
+    return *fan;
+}
+
+// Keys of one heater.
+struct HeaterKeys {
+    std::vector<Key>& keys;
+    std::size_t number;
+    std::string path;
+
+    // `part` leads from the heater to what has the field.
+    template <class Part, class Owner>
+    void append(const char* name, Range range, Part part, double Owner::*field) const {
+        keys.push_back(config::number(path + name, range,
+                                      [n = number, part, field](Draft& draft, double value) {
+                                          part(heater_of(draft, n)).*field = value;
+                                      }));
+    }
+};
+
+Complaint apply_kind(const toml::node& node, Sensor& sensor) {
+    const std::string name = node.value<std::string>().value_or("");
+    const auto known = std::find(sensor_kinds.begin(), sensor_kinds.end(), name);
+    if (known == sensor_kinds.end()) {
+        std::string all;
+        for (const std::string_view kind : sensor_kinds)
+            all += (all.empty() ? "\"" : ", \"") + std::string(kind) + '"';
+        return expected("one of " + all, node);
+    }
+    sensor.kind = static_cast<SensorKind>(known - sensor_kinds.begin());
+    return std::nullopt;
+}
+
+// Resistance must run one way with temperature, or a reading would mean two of them.
+Complaint apply_points(const toml::node& node, Sensor& sensor) {
+    const std::string what =
+        "a list of 2 to 64 pairs [temperature in C, resistance in Ohm], in order of temperature, "
+        "resistances falling";
+    constexpr std::size_t fewest = 2, most = 64;
+    const auto* list = node.as_array();
+    if (!list || list->size() < fewest || list->size() > most) return expected(what, node);
+    std::vector<ResistancePoint> points;
+    for (const toml::node& entry : *list) {
+        const auto* pair = entry.as_array();
+        if (!pair || pair->size() != 2) return expected(what, node);
+        const auto temperature_c = number_in(*pair->get(0), temperatures_c);
+        const auto ohm = number_in(*pair->get(1), resistances_ohm);
+        if (!temperature_c || !ohm) return expected(what, node);
+        if (!points.empty() &&
+            !(*temperature_c > points.back().temperature_c && *ohm < points.back().resistance_ohm))
+            return Complaint("expected " + what);
+        points.push_back({*temperature_c, *ohm});
+    }
+    sensor.points = std::move(points);
+    return std::nullopt;
+}
+
+Complaint apply_range(const toml::node& node, GuardLimits& guard) {
+    const auto values = numbers_in<2>(node, temperatures_c);
+    if (!values || !((*values)[0] < (*values)[1]))
+        return "expected a list [lowest, highest] of two numbers from -60 to 1000, the first below "
+               "the second";
+    guard.low_c = (*values)[0];
+    guard.high_c = (*values)[1];
+    return std::nullopt;
+}
+
+void append_sensor(const HeaterKeys& heater) {
+    const std::size_t n = heater.number;
+    const std::string path = heater.path + "sensor.";
+    const auto part = [](Heater& h) -> Sensor& { return h.sensor; };
+    heater.keys.push_back({path + "kind", false, false, [n](const toml::node& node, Draft& draft) {
+                               return apply_kind(node, heater_of(draft, n).sensor);
+                           }});
+    heater.keys.push_back(text(path + "file", [n](Draft& draft, const std::string& value) {
+        heater_of(draft, n).sensor.file = value;
+    }));
+    heater.keys.push_back(
+        {path + "points", false, false, [n](const toml::node& node, Draft& draft) {
+             return apply_points(node, heater_of(draft, n).sensor);
+         }});
+    heater.append("sensor.pullup_ohm", resistances_ohm, part, &Sensor::pullup_ohm);
+    heater.append("sensor.full_scale", {1, 1e9}, part, &Sensor::full_scale);
+    heater.append("sensor.r25_ohm", resistances_ohm, part, &Sensor::r25_ohm);
+    heater.append("sensor.beta_k", {500, 10'000}, part, &Sensor::beta_k);
+    heater.append("sensor.celsius_per_unit", {1e-6, 100}, part, &Sensor::celsius_per_unit);
+}
+
+void append_guard(const HeaterKeys& heater) {
+    const std::size_t n = heater.number;
+    const auto part = [](Heater& h) -> GuardLimits& { return h.guard; };
+    heater.keys.push_back(
+        {heater.path + "range_c", false, false, [n](const toml::node& node, Draft& draft) {
+             return apply_range(node, heater_of(draft, n).guard);
+         }});
+    const Range differences_c{0.5, 100};
+    heater.append("guard.gain_c", differences_c, part, &GuardLimits::gain_c);
+    heater.append("guard.gain_time_s", times_s, part, &GuardLimits::gain_time_s);
+    heater.append("guard.stray_c", differences_c, part, &GuardLimits::stray_c);
+    heater.append("guard.stray_time_s", times_s, part, &GuardLimits::stray_time_s);
+    heater.append("guard.rate_c_s", {1, 1'000}, part, &GuardLimits::rate_c_s);
+    heater.append("guard.frozen_time_s", times_s, part, &GuardLimits::frozen_time_s);
+}
+
+void append_model(const HeaterKeys& heater) {
+    const auto part = [](Heater& h) -> HeatModel& { return h.model; };
+    heater.append("model.power_w", {0, 1e5, true}, part, &HeatModel::power_w);
+    heater.append("model.capacity_j_k", {0.1, 1e7}, part, &HeatModel::capacity_j_k);
+    heater.append("model.loss_w_k", {1e-3, 1e4}, part, &HeatModel::loss_w_k);
+    heater.append("model.fan_loss_w_k", {0, 1e4}, part, &HeatModel::fan_loss_w_k);
+    heater.append("model.lag_s", {0, 600}, part, &HeatModel::lag_s);
+}
+
+void append_heater(std::vector<Key>& keys, std::size_t n) {
+    const HeaterKeys heater{keys, n, "heater." + std::string(heater_names[n]) + '.'};
+    const auto self = [](Heater& h) -> Heater& { return h; };
+    const auto pid = [](Heater& h) -> Pid& { return h.pid; };
+    append_pin(keys, heater.path + "output",
+               [n](Draft& draft) -> std::optional<Pin>& { return heater_of(draft, n).output; });
+    keys.push_back(text(heater.path + "pwm", [n](Draft& draft, const std::string& value) {
+        heater_of(draft, n).pwm = value;
+    }));
+    heater.append("cycle_s", cycles_s, self, &Heater::cycle_s);
+    heater.append("max_power", {0, 1, true}, self, &Heater::max_power);
+    heater.append("kp", {0, 100}, pid, &Pid::kp);
+    heater.append("ki", {0, 100}, pid, &Pid::ki);
+    heater.append("kd", {0, 1'000}, pid, &Pid::kd);
+    if (n == heater_tool) heater.append("min_extrude_c", {0, 1'000}, self, &Heater::min_extrude_c);
+    append_sensor(heater);
+    append_guard(heater);
+    append_model(heater);
+}
+
+}  // namespace
+
+void append_heat_keys(std::vector<Key>& keys) {
+    for (std::size_t n = 0; n < heater_count; ++n) append_heater(keys, n);
+    append_pin(keys, "fan.part.output",
+               [](Draft& draft) -> std::optional<Pin>& { return fan_of(draft).output; });
+    keys.push_back(text("fan.part.pwm",
+                        [](Draft& draft, const std::string& value) { fan_of(draft).pwm = value; }));
+    keys.push_back(number("fan.part.cycle_s", cycles_s,
+                          [](Draft& draft, double value) { fan_of(draft).cycle_s = value; }));
+}
+
+}  // namespace lyr::config

@@ -1,0 +1,127 @@
+// Outputs keep their order whichever way they go out: the heaters', then the part fan's.
+
+#include "target/run/heating.h"
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "target/gpio/gpiod_chip.h"
+#include "target/run/line_keeper.h"
+
+namespace lyr::run {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr std::chrono::duration<double> tick{thermal::tick_s};
+constexpr int silent_ms = static_cast<int>(thermal::silent_s * 1'000);
+
+Diagnostic missing(const config::Printer& printer, const std::string& key) {
+    return {Severity::error,
+            ExitStatus::machine,
+            "printer \"" + printer.name + "\" has no " + key +
+                ": it is needed to heat (not to --simulate, and not with --no-heat)",
+            {}};
+}
+
+// What is collected on the way to a stage.
+struct Outputs {
+    std::vector<thermal::Output> outputs;
+    std::vector<gpio::LineRequest> requests;
+};
+
+Status append(Outputs& all, const std::string& section, const std::optional<config::Pin>& line,
+              const std::string& pwm, double cycle_s, bool heats) {
+    if (line) {
+        all.outputs.push_back(
+            {thermal::LineOutput{all.requests.size(), thermal::SlowPwm(cycle_s)}, heats});
+        all.requests.push_back({section + ".output", line->chip, line->line, line->active_low});
+        return Done{};
+    }
+    Result<thermal::KernelPwm> channel = thermal::KernelPwm::open(pwm);
+    if (!channel) return channel.error();
+    all.outputs.push_back({std::move(*channel), heats});
+    return Done{};
+}
+
+// Kernel PWM channels belong to nobody: what is left on one stays.
+void drop_channels(const config::Printer& printer) {
+    for (const std::optional<config::Heater>& heater : printer.heaters)
+        if (heater && !heater->pwm.empty()) (void)thermal::KernelPwm::open(heater->pwm);
+}
+
+Result<thermal::HeaterPort> open_port(const config::Printer& printer, std::size_t number) {
+    const config::Heater& heater = *printer.heaters[number];
+    const std::string section = "heater." + std::string(config::heater_names[number]);
+    if (heater.sensor.file.empty()) return missing(printer, section + ".sensor.file");
+    if (!heater.output && heater.pwm.empty()) return missing(printer, section + ".output or .pwm");
+    auto sensor = thermal::open_file_sensor(heater.sensor.file);
+    if (!sensor) {
+        Diagnostic error = sensor.error();
+        error.message = section + ": " + error.message;
+        return error;
+    }
+    return thermal::HeaterPort{number, heater, std::move(*sensor)};
+}
+
+}  // namespace
+
+Result<Heating> open_heating(const config::Printer& printer) {
+    std::vector<thermal::HeaterPort> ports;
+    Outputs all;
+    for (std::size_t i = 0; i < config::heater_count; ++i) {
+        if (!printer.heaters[i]) continue;
+        Result<thermal::HeaterPort> port = open_port(printer, i);
+        if (!port) return port.error();
+        const config::Heater& heater = *printer.heaters[i];
+        const std::string section = "heater." + std::string(config::heater_names[i]);
+        if (Status added = append(all, section, heater.output, heater.pwm, heater.cycle_s, true);
+            !added)
+            return added.error();
+        ports.push_back(std::move(*port));
+    }
+    const auto& fan = printer.part_fan;
+    const bool has_fan = fan && (fan->output || !fan->pwm.empty());
+    if (has_fan)
+        if (Status added = append(all, "fan.part", fan->output, fan->pwm, fan->cycle_s, false);
+            !added)
+            return added.error();
+    Heating heating;
+    if (!all.requests.empty()) {
+        const auto open = [&] { return gpio::open_gpiod_chip(all.requests); };
+        const auto drop = [&] { drop_channels(printer); };
+        auto chip = keep_lines(all.requests.size(), open, silent_ms, drop);
+        if (!chip) return chip.error();
+        heating.chip = std::move(*chip);
+    }
+    heating.stage =
+        std::make_unique<thermal::PowerStage>(std::move(all.outputs), heating.chip.get());
+    heating.control =
+        std::make_unique<thermal::HeatControl>(std::move(ports), has_fan, *heating.stage);
+    return heating;
+}
+
+double heat_time_s() {
+    return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+}
+
+void tend(thermal::HeatControl& control, HeatAttendant& attendant,
+          const std::atomic<bool>& finished,
+          const std::function<void(const thermal::Trip&)>& tripped) {
+    bool told = false;
+    Clock::time_point next = Clock::now();
+    while (!finished.load()) {
+        control.tick(heat_time_s());
+        attendant.tick();
+        if (control.trip() && !told) tripped(*control.trip());
+        told = control.trip().has_value();
+        next = std::max(next + std::chrono::duration_cast<Clock::duration>(tick), Clock::now());
+        std::this_thread::sleep_until(next);
+    }
+}
+
+Diagnostic diagnostic_of(const thermal::Trip& trip) {
+    return {Severity::error, ExitStatus::machine, trip.message, {}};
+}
+
+}  // namespace lyr::run

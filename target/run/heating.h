@@ -1,0 +1,42 @@
+// The heaters of a board: sensors, outputs, control, and the thread that tends them.
+//
+// Contract
+//  1. open_heating() names the key that is missing, or the file or line that cannot be had (status machine); then
+//     nothing is held.
+//     Lines are held by a process of their own (line_keeper.h), so that a crash leaves no heater on; it must be called
+//     before any thread is started.
+//  2. tend() ticks until `finished`, on its own thread; a tick that takes long makes no others hurry.
+//  3. The first guard that fires is told once, through `tripped`, from whichever thread finds it.
+
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+
+#include "target/config/printer.h"
+#include "target/gpio/gpio_chip.h"
+#include "target/run/heat_order.h"
+#include "target/thermal/control.h"
+
+namespace lyr::run {
+
+// Parts of it refer to each other by address.
+struct Heating {
+    std::unique_ptr<gpio::GpioChip> chip;  // none: no output is a line
+    std::unique_ptr<thermal::PowerStage> stage;
+    std::unique_ptr<thermal::HeatControl> control;
+};
+
+Result<Heating> open_heating(const config::Printer& printer);
+
+// On the clock that tend() and the looks of others at PowerStage::expire() share.
+double heat_time_s();
+
+void tend(thermal::HeatControl& control, HeatAttendant& attendant,
+          const std::atomic<bool>& finished,
+          const std::function<void(const thermal::Trip&)>& tripped);
+
+Diagnostic diagnostic_of(const thermal::Trip& trip);
+
+}  // namespace lyr::run

@@ -1,0 +1,151 @@
+// A pair of sockets that keep messages apart; the end of the program shows as the end of the stream.
+
+#include "target/run/line_keeper.h"
+
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+
+namespace lyr::run {
+namespace {
+
+struct Request {
+    gpio::LineMask changed = 0, levels = 0;
+    bool release = false;
+};
+
+struct Reply {
+    bool ok = true;
+    std::array<char, 400> message{};  // of the diagnostic
+};
+
+Diagnostic lost(const std::string& why) {
+    return {Severity::error, ExitStatus::machine, "the keeper of the heater lines " + why, {}};
+}
+
+Reply reply_of(const Status& status) {
+    Reply reply;
+    reply.ok = status.ok();
+    if (reply.ok) return reply;
+    const std::string text = status.error().message.substr(0, reply.message.size() - 1);
+    std::copy(text.begin(), text.end(), reply.message.begin());
+    return reply;
+}
+
+template <class Message>
+bool send_whole(int socket, const Message& message) {
+    ssize_t sent;
+    do sent = ::send(socket, &message, sizeof message, MSG_NOSIGNAL);
+    while (sent < 0 && errno == EINTR);
+    return sent == static_cast<ssize_t>(sizeof message);
+}
+
+template <class Message>
+bool receive_whole(int socket, Message& message) {
+    ssize_t received;
+    do received = ::recv(socket, &message, sizeof message, 0);
+    while (received < 0 && errno == EINTR);
+    return received == static_cast<ssize_t>(sizeof message);
+}
+
+// The keeper's life.
+void serve(int socket, gpio::GpioChip& chip, int silent_ms) {
+    for (;;) {
+        pollfd waiting{socket, POLLIN, 0};
+        const int ready = ::poll(&waiting, 1, silent_ms);
+        if (ready < 0 && errno == EINTR) continue;
+        Request request;
+        if (ready <= 0 || !receive_whole(socket, request)) return;
+        const Status done =
+            request.release ? chip.release() : chip.write(request.changed, request.levels);
+        if (!send_whole(socket, reply_of(done)) || request.release) return;
+    }
+}
+
+[[noreturn]] void live(int socket, const OpenChip& open, int silent_ms,
+                       const std::function<void()>& drop) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) ::signal(signal, SIG_IGN);
+    Result<std::unique_ptr<gpio::GpioChip>> chip = open();
+    const Status opened = chip ? Status(Done{}) : Status(chip.error());
+    if (send_whole(socket, reply_of(opened)) && chip) serve(socket, **chip, silent_ms);
+    if (chip) (void)(*chip)->release();
+    if (drop) drop();
+    // Nothing of the program that this is a copy of may be wound up here.
+    ::_exit(0);
+}
+
+class KeptChip final : public gpio::GpioChip {
+public:
+    KeptChip(std::size_t line_count, int socket, pid_t keeper)
+        : line_count_(line_count), socket_(socket), keeper_(keeper) {}
+    ~KeptChip() override {
+        (void)KeptChip::release();
+        ::close(socket_);
+        ::waitpid(keeper_, nullptr, 0);
+    }
+    KeptChip(const KeptChip&) = delete;
+    KeptChip& operator=(const KeptChip&) = delete;
+
+    std::size_t line_count() const override { return line_count_; }
+    Status write(gpio::LineMask changed, gpio::LineMask levels) override {
+        if (released_) return lost("has released them");
+        return ask({changed, levels, false});
+    }
+    Status release() override {
+        if (released_) return Done{};
+        released_ = true;
+        return ask({0, 0, true});
+    }
+
+private:
+    Status ask(const Request& request) {
+        Reply reply;
+        if (!send_whole(socket_, request) || !receive_whole(socket_, reply))
+            return lost("is gone; it switched them off if nobody killed it");
+        if (reply.ok) return Done{};
+        return Diagnostic{Severity::error, ExitStatus::machine, reply.message.data(), {}};
+    }
+
+    std::size_t line_count_;
+    int socket_;
+    pid_t keeper_;
+    bool released_ = false;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<gpio::GpioChip>> keep_lines(std::size_t line_count, const OpenChip& open,
+                                                   int silent_ms,
+                                                   const std::function<void()>& drop) {
+    std::array<int, 2> sockets{};
+    if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, sockets.data()) != 0)
+        return lost(std::string("cannot be reached: ") + std::strerror(errno));
+    const pid_t keeper = ::fork();
+    if (keeper == 0) {
+        ::close(sockets[0]);
+        live(sockets[1], open, silent_ms, drop);
+    }
+    ::close(sockets[1]);
+    if (keeper < 0) {
+        ::close(sockets[0]);
+        return lost(std::string("cannot be started: ") + std::strerror(errno));
+    }
+    Reply opened;
+    const bool answered = receive_whole(sockets[0], opened);
+    if (answered && opened.ok)
+        return std::unique_ptr<gpio::GpioChip>(
+            std::make_unique<KeptChip>(line_count, sockets[0], keeper));
+    ::close(sockets[0]);
+    ::waitpid(keeper, nullptr, 0);
+    if (!answered) return lost("ended at its start");
+    return Diagnostic{Severity::error, ExitStatus::machine, opened.message.data(), {}};
+}
+
+}  // namespace lyr::run

@@ -1,0 +1,102 @@
+// The same control as a print's, with the relay in the controller's place.
+
+#include "target/run/tune.h"
+
+#include <cstdio>
+#include <thread>
+
+#include "target/run/demands.h"
+#include "target/run/heating.h"
+#include "target/run/stop_signals.h"
+#include "target/thermal/simulated_heat.h"
+
+namespace lyr::run {
+namespace {
+
+// Of a heater so slow that it has not swung by then, the gains would be of no use.
+constexpr double longest_s = 2 * 3'600;
+constexpr int tick_ms = 100;
+
+Diagnostic failed(std::string message, ExitStatus status = ExitStatus::machine) {
+    return {Severity::error, status, std::move(message), {}};
+}
+
+Status check(const TuneJob& job) {
+    const std::string name(config::heater_names[job.heater]);
+    const auto& heater = job.printer.heaters[job.heater];
+    if (!heater) return failed("printer \"" + job.printer.name + "\" has no heater." + name);
+    const auto [low_c, high_c] = std::pair(heater->guard.low_c, heater->guard.high_c);
+    if (job.target_c > low_c && job.target_c <= high_c - headroom_c) return Done{};
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "heater %s cannot be tuned at %g °C: its range_c is %g to %g, and the last %g °C "
+                  "are for overshoot",
+                  name.c_str(), job.target_c, low_c, high_c, headroom_c);
+    return failed(text);
+}
+
+void begin(const TuneJob& job, thermal::HeatControl& control) {
+    control.set_target(job.heater, job.target_c);
+    control.tune(job.heater,
+                 thermal::RelayTune(job.target_c, job.printer.heaters[job.heater]->max_power));
+}
+
+// None: not over yet.
+std::optional<Result<thermal::TuneResult>> outcome(const TuneJob& job,
+                                                   const thermal::HeatControl& control,
+                                                   double time_s) {
+    const thermal::RelayTune& relay = *control.relay();
+    if (job.progress)
+        job.progress({time_s, control.status(job.heater)->temperature_c, relay.swings(),
+                      thermal::RelayTune::settling_swings + thermal::RelayTune::measured_swings});
+    if (control.trip()) return diagnostic_of(*control.trip());
+    if (relay.finished()) {
+        const auto result = relay.result();
+        if (!result) return failed("the temperature did not swing: it follows the heater too fast");
+        return *result;
+    }
+    if (time_s > longest_s) return failed("the temperature did not swing within two hours");
+    return std::nullopt;
+}
+
+Result<thermal::TuneResult> simulated(const TuneJob& job) {
+    thermal::SimulatedHeat heat(job.printer, job.faults);
+    begin(job, heat.control());
+    for (;;) {
+        heat.advance_to(heat.time_s() + 1);
+        if (auto over = outcome(job, heat.control(), heat.time_s())) return std::move(*over);
+    }
+}
+
+Result<thermal::TuneResult> real(const TuneJob& job) {
+    const StopSignals signals;
+    Result<Heating> heating = open_heating(job.printer);
+    if (!heating) return heating.error();
+    begin(job, *heating->control);
+    // Takes the heat away when this thread hangs at a sensor.
+    const std::jthread watch([&](const std::stop_token& over) {
+        while (!over.stop_requested()) {
+            (void)heating->stage->expire(heat_time_s());
+            std::this_thread::sleep_for(std::chrono::milliseconds(tick_ms));
+        }
+    });
+    const double from_s = heat_time_s();
+    for (;;) {
+        heating->control->tick(heat_time_s());
+        const bool is_off = heating->stage->latched() && !heating->control->trip();
+        if (is_off) return failed("reading the sensors took more than 3 s; all heaters are off");
+        if (auto over = outcome(job, *heating->control, heat_time_s() - from_s))
+            return std::move(*over);
+        if (signals.wait_ms(tick_ms))
+            return failed("stopped on request; all heaters are off", ExitStatus::stopped);
+    }
+}
+
+}  // namespace
+
+Result<thermal::TuneResult> tune(const TuneJob& job) {
+    if (const Status possible = check(job); !possible) return possible.error();
+    return job.simulate ? simulated(job) : real(job);
+}
+
+}  // namespace lyr::run

@@ -1,0 +1,200 @@
+// One function a guard; each looks at the sample and its own part of the state.
+
+#include "target/thermal/guard.h"
+
+#include <algorithm>
+#include <cstdarg>
+#include <cstdio>
+
+namespace lyr::thermal {
+namespace {
+
+using config::GuardLimits;
+
+// Between the readings that the rate is taken from.
+constexpr double rate_window_s = 0.5;
+
+[[gnu::format(printf, 1, 2)]] std::string text(const char* format, ...) {
+    std::array<char, 300> line{};
+    std::va_list values;
+    va_start(values, format);
+    std::vsnprintf(line.data(), line.size(), format, values);
+    va_end(values);
+    return line.data();
+}
+
+// What every message ends with.
+constexpr const char* consequence =
+    "; all heaters are off and stay so until lyrrun is started again";
+
+std::optional<Trip> trip(GuardKind kind, const std::string& heater, const std::string& what) {
+    return Trip{kind, "heater " + heater + ": " + what + consequence};
+}
+
+std::optional<GuardKind> bad_kind(const GuardLimits& limits, const Sample& sample) {
+    if (!sample.raw) return GuardKind::unreadable;
+    if (sample.measured.wiring == Wiring::open) return GuardKind::open;
+    if (sample.measured.wiring == Wiring::shorted) return GuardKind::shorted;
+    if (sample.measured.temperature_c < limits.low_c) return GuardKind::too_cold;
+    if (sample.measured.temperature_c > limits.high_c) return GuardKind::over_temperature;
+    return std::nullopt;
+}
+
+std::string bad_text(GuardKind kind, const GuardLimits& limits, const Sample& sample) {
+    const double t = sample.measured.temperature_c, raw = sample.raw.value_or(0);
+    switch (kind) {
+        case GuardKind::open:
+            return text("the sensor reads %g, full scale: a broken wire or a loose plug", raw);
+        case GuardKind::shorted:
+            return text("the sensor reads %g, nothing: a short circuit of its wires", raw);
+        case GuardKind::too_cold:
+            return text(
+                "%.1f °C is below range_c, which begins at %g: look at the sensor and its kind", t,
+                limits.low_c);
+        case GuardKind::over_temperature:
+            return text(
+                "%.1f °C is above range_c, which ends at %g: look at the heater's switch, and at "
+                "the sensor and its kind",
+                t, limits.high_c);
+        default:
+            return "the sensor cannot be read: look at its wires and at the kernel's messages";
+    }
+}
+
+double middle(double a, double b, double c) {
+    return std::max(std::min(a, b), std::min(std::max(a, b), c));
+}
+
+std::optional<Trip> check_rate(const std::string& heater, const GuardLimits& limits,
+                               GuardState& state, const Sample& sample) {
+    std::shift_right(state.readings.begin(), state.readings.end(), 1);
+    std::shift_right(state.times_s.begin(), state.times_s.end(), 1);
+    state.readings[0] = sample.measured.temperature_c;
+    state.times_s[0] = sample.time_s;
+    state.reading_count = std::min(state.reading_count + 1, GuardState::history);
+    if (state.reading_count < GuardState::history) return std::nullopt;
+    const auto& r = state.readings;
+    const std::size_t last = GuardState::history - 1;
+    const double change_c = middle(r[0], r[1], r[2]) - middle(r[last - 2], r[last - 1], r[last]);
+    const double time_s = std::max(rate_window_s, state.times_s[1] - state.times_s[last - 1]);
+    if (std::abs(change_c) <= limits.rate_c_s * time_s) return std::nullopt;
+    return trip(
+        GuardKind::rate, heater,
+        text("the reading went by %.1f °C in %.1f s, to %.1f °C, which no heater does: look "
+             "at the sensor's plug, and whether it sits firmly",
+             change_c, time_s, r[0]));
+}
+
+void begin_phase(const GuardLimits& limits, GuardState& state, const Sample& sample) {
+    const double t = sample.measured.temperature_c;
+    state.target_c = sample.target_c;
+    state.below_since_s.reset();
+    state.highest_c.reset();
+    state.phase = Phase::off;
+    if (!(sample.target_c > 0)) return;
+    state.phase = t < sample.target_c - limits.stray_c ? Phase::heating : Phase::holding;
+    state.heating_since_s = sample.time_s;
+    state.goal_c = t + limits.gain_c;
+    state.goal_time_s = sample.time_s + limits.gain_time_s;
+}
+
+std::optional<Trip> check_heating(const std::string& heater, const GuardLimits& limits,
+                                  GuardState& state, const Sample& sample) {
+    const double t = sample.measured.temperature_c;
+    if (t >= state.target_c - limits.stray_c) {
+        state.phase = Phase::holding;
+        return std::nullopt;
+    }
+    if (sample.time_s > state.heating_since_s + settle_s) {
+        state.highest_c = std::max(state.highest_c.value_or(t), t);
+        if (t < *state.highest_c - limits.stray_c)
+            return trip(
+                GuardKind::falling, heater,
+                text("%.1f °C, after %.1f, and falling while it heats to %g °C: look "
+                     "whether sensor and heater sit in the block, and at the heater's wires",
+                     t, *state.highest_c, state.target_c));
+    }
+    if (t >= state.goal_c) {
+        state.goal_c = t + limits.gain_c;
+        state.goal_time_s = sample.time_s + limits.gain_time_s;
+    } else if (sample.time_s >= state.goal_time_s) {
+        return trip(GuardKind::too_slow, heater,
+                    text("%.1f °C on the way to %g °C, less than %g °C more than %g s ago: look at "
+                         "the heater's wires and supply, and whether the sensor sits in the block",
+                         t, state.target_c, limits.gain_c, limits.gain_time_s));
+    }
+    return std::nullopt;
+}
+
+std::optional<Trip> check_holding(const std::string& heater, const GuardLimits& limits,
+                                  GuardState& state, const Sample& sample) {
+    const double t = sample.measured.temperature_c;
+    if (t >= state.target_c - limits.stray_c) {
+        state.below_since_s.reset();
+        return std::nullopt;
+    }
+    if (!state.below_since_s) state.below_since_s = sample.time_s;
+    if (sample.time_s - *state.below_since_s <= limits.stray_time_s) return std::nullopt;
+    return trip(GuardKind::stray, heater,
+                text("%.1f °C, more than %g °C below its target of %g °C for more than %g s: look "
+                     "at the heater's wires and supply, and at draughts",
+                     t, limits.stray_c, state.target_c, limits.stray_time_s));
+}
+
+std::optional<Trip> check_off(const std::string& heater, const GuardLimits& limits,
+                              GuardState& state, const Sample& sample) {
+    const double t = sample.measured.temperature_c;
+    if (sample.power > 0) {
+        state.off_since_s.reset();
+        state.lowest_c.reset();
+        return std::nullopt;
+    }
+    if (!state.off_since_s) state.off_since_s = sample.time_s;
+    if (sample.time_s - *state.off_since_s < settle_s) return std::nullopt;
+    const double passed_s = sample.time_s - state.last_time_s;
+    const double follow_c = passed_s * limits.stray_c / limits.stray_time_s;
+    state.lowest_c = std::min(t, state.lowest_c.value_or(t) + follow_c);
+    if (t <= *state.lowest_c + limits.stray_c) return std::nullopt;
+    return trip(
+        GuardKind::stuck_on, heater,
+        text("%.1f °C and rising, though it has been switched off for %.0f s: its switch is "
+             "stuck on; cut the power now, and look at the transistor or relay",
+             t, sample.time_s - *state.off_since_s));
+}
+
+std::optional<Trip> check_frozen(const std::string& heater, const GuardLimits& limits,
+                                 GuardState& state, const Sample& sample) {
+    const bool watched = sample.is_converter && sample.target_c > 0;
+    if (!watched || state.same_raw != sample.raw) {
+        state.same_raw = sample.raw;
+        state.same_since_s = sample.time_s;
+    }
+    if (sample.time_s - state.same_since_s < limits.frozen_time_s) return std::nullopt;
+    return trip(GuardKind::frozen, heater,
+                text("the converter has read exactly %g for %g s: it is dead, or its driver is; "
+                     "raise guard.frozen_time_s if it has no noise",
+                     *sample.raw, limits.frozen_time_s));
+}
+
+}  // namespace
+
+std::optional<Trip> watch(const std::string& heater, const GuardLimits& limits, GuardState& state,
+                          const Sample& sample) {
+    if (const auto bad = bad_kind(limits, sample)) {
+        if (++state.bad < bad_samples) return std::nullopt;
+        return trip(*bad, heater, bad_text(*bad, limits, sample));
+    }
+    state.bad = 0;
+    std::optional<Trip> found = check_rate(heater, limits, state, sample);
+    if (sample.target_c != state.target_c) begin_phase(limits, state, sample);
+    if (!found && state.phase == Phase::heating)
+        found = check_heating(heater, limits, state, sample);
+    if (!found && state.phase == Phase::holding)
+        found = check_holding(heater, limits, state, sample);
+    if (!found) found = check_off(heater, limits, state, sample);
+    if (!found) found = check_frozen(heater, limits, state, sample);
+    state.last_time_s = sample.time_s;
+    return found;
+}
+
+}  // namespace lyr::thermal

@@ -1,0 +1,38 @@
+// A PWM channel of the kernel, by its folder in sysfs.
+//
+// Contract
+//  1. open() takes a channel that is exported and has a period, and leaves it enabled with nothing on it; what
+//     is missing is a diagnostic (status machine) that says what to write where.
+//  2. set() writes only what changes.
+//  3. The destructor leaves nothing on it.
+
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "base/diagnostic.h"
+
+namespace lyr::thermal {
+
+class KernelPwm {
+public:
+    static Result<KernelPwm> open(const std::string& folder);
+    KernelPwm(KernelPwm&& other) noexcept;
+    KernelPwm& operator=(KernelPwm&&) = delete;
+    ~KernelPwm();
+
+    // 0 to 1.
+    Status set(double share);
+
+private:
+    KernelPwm(std::string folder, int duty_file, std::int64_t period_ns)
+        : folder_(std::move(folder)), duty_file_(duty_file), period_ns_(period_ns) {}
+
+    std::string folder_;
+    int duty_file_;
+    std::int64_t period_ns_;
+    std::int64_t duty_ns_ = -1;  // as last written
+};
+
+}  // namespace lyr::thermal

@@ -1,0 +1,168 @@
+// Contract of target/thermal/guard.h, by number, by lists of samples.
+
+#include "target/thermal/guard.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "target/thermal/pid.h"
+
+using namespace lyr;
+using namespace lyr::thermal;
+
+namespace {
+
+struct Fired {
+    GuardKind kind;
+    double time_s;
+};
+
+using Curve = std::function<double(double time_s)>;
+
+struct Watched {
+    config::GuardLimits limits = config::default_heater(config::heater_tool).guard;
+    double target_c = 200, power = 1;
+    bool is_converter = true;
+    // A converter's figure changes from tick to tick.
+    bool noisy = true;
+};
+
+std::optional<Fired> fired(const Watched& watched, const Curve& temperature_c, double until_s) {
+    GuardState state;
+    for (int tick = 0; tick * tick_s <= until_s; ++tick) {
+        const double time_s = tick * tick_s;
+        const double noise = watched.noisy ? 0.01 * (tick % 2) : 0;
+        Sample sample{
+            time_s,           2'000 + noise, watched.is_converter, {temperature_c(time_s) + noise},
+            watched.target_c, watched.power};
+        if (const auto trip = watch("tool", watched.limits, state, sample)) {
+            CHECK(trip->message.starts_with("heater tool: "));
+            return Fired{trip->kind, time_s};
+        }
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+TEST_CASE("guard 1: four bad samples in a row, and no fewer") {
+    const Watched watched;
+    for (const auto& [bad_c, kind] :
+         {std::pair{-5.0, GuardKind::too_cold}, std::pair{280.0, GuardKind::over_temperature}})
+        for (int count = 1; count <= 5; ++count) {
+            const double from_s = 5, to_s = from_s + (count - 0.5) * tick_s;
+            const auto trip = fired(
+                watched,
+                [&, bad = bad_c](double t) { return t > from_s - 0.01 && t < to_s ? bad : 198.0; },
+                10);
+            CHECK(trip.has_value() == (count >= 4));
+            if (trip) CHECK(trip->kind == kind);
+        }
+}
+
+TEST_CASE("guard 2: a jump is told from a glitch and from the fastest heater") {
+    const Watched watched;
+    const auto glitch = [](double t) { return std::abs(t - 5) < 0.04 ? 120.0 : 198.0; };
+    CHECK_FALSE(fired(watched, glitch, 20));
+    for (const double sign : {1.0, -1.0}) {
+        const auto jump = fired(
+            watched, [&](double t) { return t < 5 ? 199.0 : 199 + sign * 30; }, 20);
+        REQUIRE(jump);
+        CHECK(jump->kind == GuardKind::rate);
+        CHECK(jump->time_s < 6);
+    }
+    CHECK_FALSE(fired(
+        watched, [](double t) { return std::min(198.0, 20 + 30 * t); }, 20));
+}
+
+TEST_CASE("guard 3: heating must gain 2 °C in 20 s, all the way") {
+    const Watched watched;
+    const auto stands = fired(
+        watched, [](double) { return 25.0; }, 30);
+    REQUIRE(stands);
+    CHECK(stands->kind == GuardKind::too_slow);
+    CHECK(stands->time_s == doctest::Approx(20));
+    // A little faster than asked, and a little slower.
+    CHECK_FALSE(fired(
+        watched, [](double t) { return 25 + 0.11 * t; }, 1'500));
+    CHECK(fired(
+              watched, [](double t) { return 25 + 0.09 * t; }, 100)
+              ->kind == GuardKind::too_slow);
+    // It may stop only where the target is near.
+    CHECK_FALSE(fired(
+        watched, [](double t) { return std::min(197.0, 25 + 2 * t); }, 500));
+    const auto short_of = fired(
+        watched, [](double t) { return std::min(190.0, 25 + 2 * t); }, 500);
+    REQUIRE(short_of);
+    CHECK(short_of->kind == GuardKind::too_slow);
+    Watched off = watched;
+    off.target_c = 0;
+    CHECK_FALSE(fired(
+        off, [](double) { return 25.0; }, 100));
+}
+
+TEST_CASE("guard 4: falling while heating, but for the first seconds") {
+    const Watched watched;
+    const auto falls = fired(
+        watched, [](double t) { return t < 30 ? 25 + 2 * t : 85 - 1.5 * (t - 30); }, 60);
+    REQUIRE(falls);
+    CHECK(falls->kind == GuardKind::falling);
+    CHECK(falls->time_s == doctest::Approx(30 + 4 / 1.5).epsilon(0.02));
+    // Heating begins while the sensor still tells of cooling.
+    CHECK_FALSE(fired(
+        watched, [](double t) { return std::min(198.0, t < 6 ? 150 - 2 * t : 138 + 2 * (t - 6)); },
+        100));
+}
+
+TEST_CASE("guard 5: straying for longer than 40 s, and not for less") {
+    const Watched watched;
+    const auto dip = [](double length_s) {
+        return [=](double t) { return t > 50 && t < 50 + length_s ? 194.0 : 200.0; };
+    };
+    CHECK_FALSE(fired(watched, dip(39), 200));
+    const auto strays = fired(watched, dip(60), 200);
+    REQUIRE(strays);
+    CHECK(strays->kind == GuardKind::stray);
+    CHECK(strays->time_s == doctest::Approx(90).epsilon(0.01));
+    // Two dips of 30 s are not one of 60.
+    CHECK_FALSE(fired(
+        watched, [](double t) { return std::fmod(t, 40) < 30 && t > 40 ? 194.0 : 200.0; }, 400));
+}
+
+TEST_CASE("guard 6: rising while off, but neither the lag nor a warm neighbour") {
+    Watched off;
+    off.target_c = 0;
+    off.power = 0;
+    const auto rises = fired(
+        off, [](double t) { return 25 + 0.5 * t; }, 60);
+    REQUIRE(rises);
+    CHECK(rises->kind == GuardKind::stuck_on);
+    CHECK(rises->time_s < 10 + 4 / 0.4 + 1);
+    CHECK_FALSE(fired(
+        off, [](double t) { return std::min(40.0, 25 + 3 * t); }, 60));
+    CHECK_FALSE(fired(
+        off, [](double t) { return 25 + 0.05 * t; }, 600));
+    CHECK_FALSE(fired(
+        off, [](double t) { return 200 - 0.5 * t; }, 300));
+    Watched on = off;
+    on.power = 0.2;
+    CHECK_FALSE(fired(
+        on, [](double t) { return 25 + 0.5 * t; }, 60));
+}
+
+TEST_CASE("guard 7: a figure that never changes, where it is a converter's") {
+    Watched watched;
+    watched.noisy = false;
+    const auto still = [](double) { return 199.0; };
+    const auto frozen = fired(watched, still, 60);
+    REQUIRE(frozen);
+    CHECK(frozen->kind == GuardKind::frozen);
+    CHECK(frozen->time_s == doctest::Approx(20));
+    watched.is_converter = false;
+    CHECK_FALSE(fired(watched, still, 300));
+    watched.is_converter = true;
+    watched.target_c = 0;
+    CHECK_FALSE(fired(watched, still, 300));
+}

@@ -1,0 +1,141 @@
+// Contracts of target/thermal/power_stage.h and kernel_pwm.h, by number.
+
+#include "target/thermal/power_stage.h"
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+
+#include "target/gpio/mock_chip.h"
+
+using namespace lyr;
+using namespace lyr::thermal;
+
+namespace {
+
+// Two heaters and a fan on lines.
+struct Bench {
+    gpio::VirtualClock clock;
+    std::vector<gpio::LineWrite> writes;
+    bool broken = false;
+    gpio::MockChip chip{
+        3, clock, gpio::recorder(writes), [this](std::uint64_t) {
+            return broken ? std::optional(Diagnostic{
+                                Severity::error, ExitStatus::machine, "writing failed", {}})
+                          : std::nullopt;
+        }};
+    PowerStage stage{outputs(), &chip};
+
+    static std::vector<Output> outputs() {
+        std::vector<Output> made;
+        for (std::size_t line = 0; line < 3; ++line)
+            made.push_back({LineOutput{line, SlowPwm(1)}, line < 2});
+        return made;
+    }
+};
+
+constexpr std::array<double, 3> full{1, 1, 1};
+
+struct PwmFolder {
+    std::string path = (std::filesystem::temp_directory_path() / "lyr_thermal_pwm").string();
+    PwmFolder() { std::filesystem::create_directories(path); }
+    ~PwmFolder() { std::filesystem::remove_all(path); }
+    void hold(const char* file, const std::string& text) const {
+        std::ofstream(path + '/' + file) << text;
+    }
+    int held(const char* file) const {
+        int value = -1;
+        std::ifstream(path + '/' + file) >> value;
+        return value;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("power stage 1: all lines leave in one write") {
+    Bench bench;
+    REQUIRE(bench.stage.apply(full, 0).ok());
+    REQUIRE(bench.writes.size() == 1);
+    CHECK(bench.chip.levels() == 7);
+    REQUIRE(bench.stage.apply(std::array{0.0, 1.0, 0.0}, 0.1).ok());
+    CHECK(bench.chip.levels() == 2);
+    CHECK(bench.writes.size() == 2);
+}
+
+TEST_CASE("power stage 2: off is one write and for good; fans keep turning") {
+    Bench bench;
+    REQUIRE(bench.stage.apply(full, 0).ok());
+    REQUIRE(bench.stage.all_off().ok());
+    CHECK(bench.writes.size() == 2);
+    CHECK(bench.chip.levels() == 4);
+    for (int i = 0; i < 100; ++i) {
+        REQUIRE(bench.stage.apply(full, i * tick_s).ok());
+        CHECK(bench.chip.levels() == 4);
+    }
+    CHECK(bench.stage.latched());
+}
+
+TEST_CASE("power stage 3: heaters that nobody refreshes for 3 s go off") {
+    Bench bench;
+    CHECK_FALSE(bench.stage.expire(100));  // never in use
+    REQUIRE(bench.stage.apply(full, 100).ok());
+    CHECK_FALSE(bench.stage.expire(102.9));
+    CHECK(bench.chip.levels() == 7);
+    const auto trip = bench.stage.expire(103.1);
+    REQUIRE(trip);
+    CHECK(trip->kind == GuardKind::silent);
+    CHECK(bench.chip.levels() == 4);
+    CHECK_FALSE(bench.stage.expire(110));  // told once
+    REQUIRE(bench.stage.apply(full, 111).ok());
+    CHECK(bench.chip.levels() == 4);
+}
+
+TEST_CASE("power stage 4: a write that fails is told, and heat does not come back by itself") {
+    Bench bench;
+    REQUIRE(bench.stage.apply(full, 0).ok());
+    bench.broken = true;
+    CHECK_FALSE(bench.stage.apply(full, 0.1).ok());
+    bench.broken = false;
+    CHECK(bench.stage.apply(full, 0.2).ok());
+    CHECK(bench.chip.levels() == 4);
+}
+
+TEST_CASE("power stage 5: the end leaves nothing on, not even fans") {
+    Bench bench;
+    {
+        PowerStage stage(Bench::outputs(), &bench.chip);
+        REQUIRE(stage.apply(full, 0).ok());
+    }
+    CHECK(bench.chip.levels() == 0);
+    CHECK(bench.chip.released());
+}
+
+TEST_CASE("kernel pwm: a channel is enabled with nothing on it, set in nanoseconds and left off") {
+    const PwmFolder folder;
+    CHECK_FALSE(KernelPwm::open(folder.path).ok());
+    folder.hold("period", "0\n");
+    CHECK_FALSE(KernelPwm::open(folder.path).ok());
+    folder.hold("period", "40000\n");
+    folder.hold("duty_cycle", "");
+    folder.hold("enable", "0\n");
+    {
+        Result<KernelPwm> pwm = KernelPwm::open(folder.path);
+        REQUIRE(pwm.ok());
+        CHECK(folder.held("enable") == 1);
+        CHECK(folder.held("duty_cycle") == 0);
+        std::vector<Output> outputs;
+        outputs.push_back({std::move(*pwm), true});
+        PowerStage stage(std::move(outputs), nullptr);
+        REQUIRE(stage.apply(std::array{0.25}, 0).ok());
+        CHECK(folder.held("duty_cycle") == 10'000);
+        REQUIRE(stage.apply(std::array{7.0}, 0.1).ok());
+        CHECK(folder.held("duty_cycle") == 40'000);
+        REQUIRE(stage.all_off().ok());
+        CHECK(folder.held("duty_cycle") == 0);
+        REQUIRE(stage.apply(std::array{1.0}, 0.2).ok());
+        CHECK(folder.held("duty_cycle") == 0);
+    }
+    CHECK(folder.held("duty_cycle") == 0);
+}
