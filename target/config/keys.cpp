@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "target/config/key_rules.h"
+#include "target/config/machine_keys.h"
 
 namespace lyr::config {
 namespace {
@@ -44,15 +45,6 @@ Key range_key(const std::string& axis, std::size_t number) {
          }});
 }
 
-Key kinematics_key() {
-    return {"kinematics", false, false, [](const toml::node& node, Draft& draft) -> Complaint {
-                if (node.value<std::string>() != "cartesian")
-                    return Complaint("expected \"cartesian\", the only kinematics so far");
-                draft.printer.kinematics = Kinematics::cartesian;
-                return std::nullopt;
-            }};
-}
-
 void append_axis(std::vector<Key>& keys, std::size_t i) {
     const std::string axis = "axis." + std::string(axis_names[i]) + '.';
     const auto axis_number = [&](const char* name, double high, double Axis::*field) {
@@ -83,7 +75,7 @@ std::vector<Key> printer_keys() {
     std::vector<Key> keys;
     keys.push_back(
         text("name", [](Draft& d, const std::string& value) { d.printer.name = value; }));
-    keys.push_back(kinematics_key());
+    append_machine_keys(keys);
     keys.push_back(text("chip", [](Draft& d, const std::string& value) { d.chip = value; }));
     keys.push_back(start_key());
     keys.push_back(number("junction_deviation_mm", {0, 1},

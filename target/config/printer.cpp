@@ -14,6 +14,7 @@
 
 #include "base/nearest_name.h"
 #include "target/config/keys.h"
+#include "target/config/machine_keys.h"
 
 namespace lyr::config {
 namespace {
@@ -51,6 +52,7 @@ public:
     void check_lines();
     void check_heat();
     void check_pulses();
+    void check_machine();
     // The first problem in the order of the file.
     const std::pair<Place, std::string>* first_problem() const;
     Draft& draft() { return draft_; }
@@ -198,13 +200,19 @@ void Walk::check_pulses() {
     const auto needed_ns = static_cast<double>(pulse.high_ns + pulse.low_ns);
     for (std::size_t i = 0; i < axis_count; ++i) {
         const Axis& axis = draft_.printer.axes[i];
-        const double rate_hz = axis.max_speed_mm_s * axis.steps_per_mm;
+        const double rate_hz = fastest_motor_mm_s(draft_.printer, i) * axis.steps_per_mm;
         if (rate_hz * needed_ns <= ns_per_s) continue;
         const std::string path = "axis." + std::string(axis_names[i]) + ".max_speed_mm_s";
         problem(place(path), path + ": " + std::to_string(std::llround(rate_hz)) +
                                  " steps a second leave no time for pulses of high_us + low_us = " +
                                  std::to_string(pulse.high_ns + pulse.low_ns) + " ns");
     }
+}
+
+void Walk::check_machine() {
+    const auto given = [this](const std::string& path) { return places_.count(path) != 0; };
+    for (const auto& [path, message] : machine_problems(draft_.printer, given))
+        problem(place(path), path + message);
 }
 
 const std::pair<Place, std::string>* Walk::first_problem() const {
@@ -248,6 +256,7 @@ Result<Printer> parse_printer(std::string_view text, const std::string& file) {
     walk.check_lines();
     walk.check_heat();
     walk.check_pulses();
+    if (!walk.first_problem()) walk.check_machine();
     if (const auto* problem = walk.first_problem())
         return input_error(problem->second, file, problem->first);
     Printer printer = std::move(walk.draft().printer);

@@ -12,6 +12,8 @@
 //  4. No two lines of a Printer are the same line of the same chip.
 //  5. known_keys() lists every key that a file may have, "axis.*." standing for each axis.
 //  6. No input makes it crash.
+//  7. A delta's arms reach the whole of its reach_mm, at flattest_arm_share of their length at the most, and
+//     its start lies within.
 
 #pragma once
 
@@ -28,7 +30,7 @@
 
 namespace lyr::config {
 
-enum class Kinematics : std::uint8_t { cartesian };
+enum class Kinematics : std::uint8_t { cartesian, corexy, delta };
 
 // Of Printer::axes.
 enum AxisNumber : std::size_t { axis_x = 0, axis_y = 1, axis_z = 2, axis_e = 3 };
@@ -53,9 +55,32 @@ struct PulseTiming {
     std::int64_t late_limit_ns = 5'000'000;   // an edge later than this ends the print
 };
 
+// An arm this much of whose length lies level is 10 degrees from flat; beyond, it pulls rather than lifts.
+inline constexpr double flattest_arm_share = 0.985;
+
+// Of a delta: three towers about the middle of the bed.
+struct DeltaFrame {
+    std::array<double, 3> arm_mm{}, radius_mm{};
+    std::array<double, 3> tower_angle_deg{210, 330, 90};
+    double reach_mm = 0;  // how far from the middle the head may go
+};
+
+enum class ShaperKind : std::uint8_t { none, zv, mzv, ei };
+
+struct InputShaper {
+    ShaperKind kind = ShaperKind::none;
+    double frequency_hz = 0;
+    double damping = 0.1;
+};
+
 struct Printer {
     std::string name;
     Kinematics kinematics = Kinematics::cartesian;
+    DeltaFrame delta;
+    std::array<InputShaper, 3> shapers;  // of x, y and z
+    double pressure_advance_s = 0, pressure_smooth_s = 0.04;
+    double max_jerk_mm_s3 = 0;            // 0: no limit
+    std::array<double, 3> backlash_mm{};  // of the motors of x, y and z
     double junction_deviation_mm = 0.02;
     std::array<double, 3> start_mm{};            // where the head stands when a print begins
     std::optional<double> filament_diameter_mm;  // none: as the file says
@@ -73,5 +98,9 @@ Result<Printer> read_printer(const std::string& path);
 Result<Printer> parse_printer(std::string_view text, const std::string& file);
 
 std::vector<std::string> known_keys();
+
+// The fastest that the motor of an axis ever moves, in mm of its steps_per_mm: a belt of a CoreXY follows
+// two axes, a carriage of a delta is fastest where its arm is flattest.
+double fastest_motor_mm_s(const Printer& printer, std::size_t motor);
 
 }  // namespace lyr::config

@@ -9,52 +9,36 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-double along(const Point& point, std::size_t axis) {
-    return axis == axis_x ? point.x : axis == axis_y ? point.y : point.z;
-}
-
 MotorPath even(double from_mm, double to_mm, double length_mm, double origin_mm,
                double steps_per_mm) {
     return Linear{steps_per_mm * (from_mm - origin_mm),
                   steps_per_mm * (to_mm - from_mm) / length_mm};
 }
 
+double dot(const AxisShares& shares, const Point& point) {
+    return shares[axis_x] * point.x + shares[axis_y] * point.y + shares[axis_z] * point.z;
+}
+
 // An angle that runs backwards has the same cosine as its mirror image that runs forwards; a motor
-// the other way round is half a turn ahead.
-MotorPath turning(const Arc& arc, std::size_t axis, double length_mm, double origin_mm,
+// the other way round is half a turn ahead. `size` and `ahead_rad` are of the axes' shares as a
+// vector in the plane.
+MotorPath turning(const Arc& arc, double size, double ahead_rad, double length_mm, double from_mm,
                   double steps_per_mm) {
-    const double angle_rad = arc.start_angle_rad - (axis == axis_y ? pi / 2 : 0);
+    const double angle_rad = arc.start_angle_rad - ahead_rad;
     const double forwards_rad =
         (arc.sweep_rad < 0 ? -angle_rad : angle_rad) + (steps_per_mm < 0 ? pi : 0);
     const double turns = std::floor(forwards_rad / (2 * pi));
-    return Harmonic{steps_per_mm * (along(arc.from, axis) - origin_mm),
-                    std::abs(steps_per_mm) * arc.radius_mm, forwards_rad - turns * 2 * pi,
-                    std::abs(arc.sweep_rad) / length_mm};
-}
-
-MotorPaths paths(const Cartesian& cartesian, const Path& path, const Point& origin) {
-    const double length_mm = length_of(path);
-    const Point &from = start_of(path), &to = end_of(path);
-    const auto* arc = std::get_if<Arc>(&path);
-    MotorPaths motors;
-    for (std::size_t axis = axis_x; axis <= axis_z; ++axis) {
-        const double origin_mm = along(origin, axis), steps_per_mm = cartesian.steps_per_mm[axis];
-        const bool turns = arc && axis != axis_z && steps_per_mm != 0;
-        motors[axis] =
-            turns ? turning(*arc, axis, length_mm, origin_mm, steps_per_mm)
-                  : even(along(from, axis), along(to, axis), length_mm, origin_mm, steps_per_mm);
-    }
-    motors[axis_e] = even(0, advance_of(path), length_mm, 0, cartesian.steps_per_mm[axis_e]);
-    return motors;
+    return Harmonic{steps_per_mm * from_mm, std::abs(steps_per_mm) * size * arc.radius_mm,
+                    forwards_rad - turns * 2 * pi, std::abs(arc.sweep_rad) / length_mm};
 }
 
 }  // namespace
 
 Status check(const Kinematics& kinematics) {
     constexpr std::array names{"x", "y", "z", "e"};
-    const auto& steps_per_mm = std::get<Cartesian>(kinematics).steps_per_mm;
+    const auto& steps = steps_per_mm(kinematics);
     for (std::size_t i = 0; i < axis_count; ++i)
-        if (!(std::abs(steps_per_mm[i]) <= most_steps_per_mm))
+        if (!(std::abs(steps[i]) <= most_steps_per_mm))
             return Diagnostic{Severity::error,
                               ExitStatus::machine,
                               std::string("the steps per mm of axis ") + names[i] +
@@ -63,8 +47,43 @@ Status check(const Kinematics& kinematics) {
     return Done{};
 }
 
-MotorPaths motor_paths(const Kinematics& kinematics, const Path& path, const Point& origin) {
-    return std::visit([&](const auto& kind) { return paths(kind, path, origin); }, kinematics);
+const std::array<double, axis_count>& steps_per_mm(const Kinematics& kinematics) {
+    return std::visit(
+        [](const auto& kind) -> const auto& { return kind.steps_per_mm; }, kinematics);
+}
+
+AxisShares axis_shares(const LinearKinematics& kinematics, std::size_t motor) {
+    if (std::holds_alternative<CoreXy>(kinematics) && motor <= axis_y)
+        return {1, motor == axis_x ? 1.0 : -1.0, 0};
+    AxisShares own{};
+    own[motor] = 1;
+    return own;
+}
+
+double carriage_mm(const Delta::Tower& tower, const Point& head) {
+    const double off_mm = std::hypot(head.x - tower.x_mm, head.y - tower.y_mm);
+    return head.z + std::sqrt((tower.arm_mm - off_mm) * (tower.arm_mm + off_mm));
+}
+
+MotorPaths motor_paths(const LinearKinematics& kinematics, const Path& path, const Point& origin) {
+    const auto& steps = std::visit(
+        [](const auto& kind) -> const auto& { return kind.steps_per_mm; }, kinematics);
+    const double length_mm = length_of(path);
+    const auto* arc = std::get_if<Arc>(&path);
+    MotorPaths motors;
+    for (std::size_t motor = 0; motor < extruder_motor; ++motor) {
+        const AxisShares shares = axis_shares(kinematics, motor);
+        const double from_mm = dot(shares, start_of(path)), to_mm = dot(shares, end_of(path));
+        const double origin_mm = dot(shares, origin);
+        const double size = std::hypot(shares[axis_x], shares[axis_y]);
+        if (arc && size != 0 && steps[motor] != 0)
+            motors[motor] = turning(*arc, size, std::atan2(shares[axis_y], shares[axis_x]),
+                                    length_mm, from_mm - origin_mm, steps[motor]);
+        else
+            motors[motor] = even(from_mm, to_mm, length_mm, origin_mm, steps[motor]);
+    }
+    motors[extruder_motor] = even(0, advance_of(path), length_mm, 0, steps[axis_e]);
+    return motors;
 }
 
 }  // namespace lyr::motion

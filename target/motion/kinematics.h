@@ -7,6 +7,7 @@
 //  2. The extruder's motor counts from the begin of each path: what went before is the caller's to
 //     add.
 //  3. A motor with negative steps_per_mm turns the other way round; with 0 it never moves.
+//  4. carriage_mm() is exact to rounding where the arm reaches; elsewhere it is not a number.
 
 #pragma once
 
@@ -27,7 +28,26 @@ struct Cartesian {
     std::array<double, axis_count> steps_per_mm{};
 };
 
-using Kinematics = std::variant<Cartesian>;
+// Two motors on crossed belts: the first follows x + y, the second x - y. The others are Cartesian.
+struct CoreXy {
+    std::array<double, axis_count> steps_per_mm{};
+};
+
+// Three carriages on upright towers, each with an arm of fixed length to the head. A carriage is
+// sqrt(arm^2 - d^2) above the head, d being the head's distance from the tower in x and y.
+struct Delta {
+    struct Tower {
+        double x_mm = 0, y_mm = 0;  // of the place over which the arm would be upright
+        double arm_mm = 0;
+    };
+    static constexpr std::size_t tower_count = 3;
+    std::array<double, axis_count> steps_per_mm{};  // of the three carriages and the extruder
+    std::array<Tower, tower_count> towers{};
+};
+
+// Machines whose motors are sums of axes: along a path they are in closed form.
+using LinearKinematics = std::variant<Cartesian, CoreXy>;
+using Kinematics = std::variant<Cartesian, CoreXy, Delta>;
 
 // start + rate * distance
 struct Linear {
@@ -52,6 +72,15 @@ inline constexpr double most_steps_per_mm = 1e6;
 // Steps per mm are numbers up to most_steps_per_mm; otherwise which are not (status machine).
 Status check(const Kinematics& kinematics);
 
-MotorPaths motor_paths(const Kinematics& kinematics, const Path& path, const Point& origin);
+const std::array<double, axis_count>& steps_per_mm(const Kinematics& kinematics);
+
+// How much of x, y and z is in a motor of the first three.
+using AxisShares = std::array<double, 3>;
+AxisShares axis_shares(const LinearKinematics& kinematics, std::size_t motor);
+
+// Height of a carriage when the head is at a point.
+double carriage_mm(const Delta::Tower& tower, const Point& head);
+
+MotorPaths motor_paths(const LinearKinematics& kinematics, const Path& path, const Point& origin);
 
 }  // namespace lyr::motion

@@ -33,6 +33,7 @@ struct Limits {
     std::array<AxisLimits, axis_count> axes;
     double junction_deviation_mm = 0.02;
     double extruder_jump_mm_s = 1;
+    double jerk_mm_s3 = 0;  // along the path; 0: no limit
 };
 
 struct Move {

@@ -129,7 +129,7 @@ std::size_t Planner::limit_backwards() {
     double end_mm2_s2 = 0;
     for (std::size_t i = size_ - 1; i > 0; --i) {
         Entry& entry = at(i);
-        const double reachable = end_mm2_s2 + 2 * entry.limits.acceleration_mm_s2 * entry.length_mm;
+        const double reachable = reachable_mm2_s2(end_mm2_s2, entry);
         if (final == 0 && entry.junction_mm2_s2 <= reachable) final = i;
         end_mm2_s2 = entry.start_mm2_s2 = std::min(entry.junction_mm2_s2, reachable);
     }
@@ -141,9 +141,16 @@ void Planner::limit_forwards() {
         const Entry& entry = at(i);
         Entry& next = at(i + 1);
         next.start_mm2_s2 =
-            std::min(next.start_mm2_s2,
-                     entry.start_mm2_s2 + 2 * entry.limits.acceleration_mm_s2 * entry.length_mm);
+            std::min(next.start_mm2_s2, reachable_mm2_s2(entry.start_mm2_s2, entry));
     }
+}
+
+double Planner::reachable_mm2_s2(double speed_mm2_s2, const Entry& entry) const {
+    const double acceleration_mm_s2 = entry.limits.acceleration_mm_s2;
+    if (!(limits_.jerk_mm_s3 > 0)) return speed_mm2_s2 + 2 * acceleration_mm_s2 * entry.length_mm;
+    const double reached_mm_s = reachable_mm_s(std::sqrt(speed_mm2_s2), entry.length_mm,
+                                               {acceleration_mm_s2, limits_.jerk_mm_s3});
+    return reached_mm_s * reached_mm_s;
 }
 
 bool Planner::pop(PlannedMove& planned) {
@@ -158,9 +165,13 @@ bool Planner::pop(PlannedMove& planned) {
     planned.tag = entry.move.tag;
     planned.start_ns = time_ns_;
     planned.start_part_ns = time_part_ns_;
+    const double start_mm_s = std::sqrt(entry.start_mm2_s2), end_mm_s = std::sqrt(end_mm2_s2);
+    const auto [top_mm_s, acceleration_mm_s2] = entry.limits;
     planned.profile =
-        trapezoid(entry.length_mm, std::sqrt(entry.start_mm2_s2), std::sqrt(end_mm2_s2),
-                  entry.limits.speed_mm_s, entry.limits.acceleration_mm_s2);
+        limits_.jerk_mm_s3 > 0
+            ? s_curve(entry.length_mm, start_mm_s, end_mm_s, top_mm_s,
+                      {acceleration_mm_s2, limits_.jerk_mm_s3})
+            : trapezoid(entry.length_mm, start_mm_s, end_mm_s, top_mm_s, acceleration_mm_s2);
     advance_ns(planned.profile.duration_s * ns_per_s);
     first_ = first_ + 1 < ring_.size() ? first_ + 1 : 0;
     --size_;

@@ -11,6 +11,7 @@
 //     time 0 and each where the one before ends, or a dwell later, at the same speed. The last
 //     before a flush or dwell ends at speed 0.
 //  2. No planned move exceeds its MoveLimits, no junction its corner speed.
+//     With a limit of jerk the acceleration never changes faster, and is 0 at every end of a move.
 //  3. With fewer than `capacity` moves between flushes the plan is the fastest that keeps 2.
 //     Otherwise each move is planned with at least three quarters of the capacity known beyond it.
 //  4. Start times are whole nanoseconds plus a remainder that is carried along: the sum of a
@@ -88,6 +89,8 @@ private:
     void settle();
     std::size_t limit_backwards();
     void limit_forwards();
+    // The largest squared speed at the other end of a move, from this one at one end.
+    double reachable_mm2_s2(double speed_mm2_s2, const Entry& entry) const;
     void advance_ns(double time_ns);
 
     Limits limits_;

@@ -28,24 +28,45 @@ const Phase& phase_at_time(const Profile& profile, double time_s) {
     return phase_where(profile, [=](const Phase& phase) { return phase.time_s <= time_s; });
 }
 
+struct End {
+    double length_mm, duration_s, speed_mm_s;
+};
+
+// What is left of the phases begins, and ends, at the end.
+void finish(Profile& profile, std::size_t used, const End& end) {
+    for (std::size_t i = used; i < Profile::phase_count; ++i)
+        profile.phases[i] = {end.length_mm, end.duration_s, end.speed_mm_s};
+    profile.length_mm = end.length_mm;
+    profile.duration_s = end.duration_s;
+    profile.end_speed_mm_s = end.speed_mm_s;
+}
+
 }  // namespace
 
 double Profile::time_at(double distance_mm) const {
     const Phase& phase = phase_where(
         *this, [=](const Phase& candidate) { return candidate.distance_mm <= distance_mm; });
-    return time_in_phase(phase, distance_mm);
+    if (phase.jerk_mm_s3 == 0) return time_in_phase(phase, distance_mm);
+    const std::size_t next = static_cast<std::size_t>(&phase - phases.data()) + 1;
+    double low_s = phase.time_s, high_s = next < phase_count ? phases[next].time_s : duration_s;
+    while (true) {
+        const double middle_s = low_s + (high_s - low_s) / 2;
+        if (!(middle_s > low_s && middle_s < high_s)) return high_s;
+        (distance_at(middle_s) < distance_mm ? low_s : high_s) = middle_s;
+    }
 }
 
 double Profile::distance_at(double time_s) const {
     const Phase& phase = phase_at_time(*this, time_s);
-    const double since_s = time_s - phase.time_s;
+    const double t = time_s - phase.time_s;
     return phase.distance_mm +
-           since_s * (phase.speed_mm_s + since_s * phase.acceleration_mm_s2 / 2);
+           t * (phase.speed_mm_s + t * (phase.acceleration_mm_s2 / 2 + t * phase.jerk_mm_s3 / 6));
 }
 
 double Profile::speed_at(double time_s) const {
     const Phase& phase = phase_at_time(*this, time_s);
-    return phase.speed_mm_s + (time_s - phase.time_s) * phase.acceleration_mm_s2;
+    const double t = time_s - phase.time_s;
+    return phase.speed_mm_s + t * (phase.acceleration_mm_s2 + t * phase.jerk_mm_s3 / 2);
 }
 
 Profile trapezoid(double length_mm, double start_speed_mm_s, double end_speed_mm_s,
@@ -64,9 +85,7 @@ Profile trapezoid(double length_mm, double start_speed_mm_s, double end_speed_mm
     profile.phases[0] = {0, 0, v, acceleration_mm_s2};
     profile.phases[1] = {up_mm, up_s, peak_mm_s, 0};
     profile.phases[2] = {up_mm + even_mm, up_s + even_s, peak_mm_s, -acceleration_mm_s2};
-    profile.length_mm = length_mm;
-    profile.duration_s = up_s + even_s + duration_s(down_mm, peak_mm_s, w);
-    profile.end_speed_mm_s = w;
+    finish(profile, 3, {length_mm, up_s + even_s + duration_s(down_mm, peak_mm_s, w), w});
     return profile;
 }
 

@@ -1,5 +1,5 @@
-// How fast a path is walked: time as a function of distance and back. Phases of even acceleration,
-// one after the other; a trapezoid has three of them.
+// How fast a path is walked: time as a function of distance and back. Phases of even acceleration or
+// even jerk, one after the other; a trapezoid has three of them, an S-curve seven.
 //
 // Contract
 //  1. distance_at(time_at(s)) is s, time_at(0) is 0 and time_at(length) is the duration, up to
@@ -7,6 +7,9 @@
 //  2. Distance and speed are continuous over phases; distance never falls.
 //  3. trapezoid() begins and ends with the speeds given, never exceeds `top_speed` and is the
 //     fastest such profile with at most this acceleration.
+//  4. So does s_curve(), and its acceleration is 0 at both ends, never exceeds the one given and never
+//     changes faster than the jerk. It is the fastest of those that rise to one top speed and fall from it.
+//  5. reachable_mm_s() is the largest speed that such a rise gets to over a length.
 
 #pragma once
 
@@ -22,10 +25,11 @@ struct Phase {
     double time_s = 0;       // of its begin, since the begin of the move
     double speed_mm_s = 0;   // at its begin
     double acceleration_mm_s2 = 0;
+    double jerk_mm_s3 = 0;
 };
 
 struct Profile {
-    static constexpr std::size_t phase_count = 3;
+    static constexpr std::size_t phase_count = 7;
     std::array<Phase, phase_count> phases;
     double length_mm = 0;
     double duration_s = 0;
@@ -36,7 +40,7 @@ struct Profile {
     double speed_at(double time_s) const;
 };
 
-// When a phase gets to a distance: 2 s / (v + w) with v, w the speeds at both ends of the way,
+// When a phase without jerk gets to a distance: 2 s / (v + w) with v, w the speeds at both ends of the way,
 // which loses no digits for any acceleration, none included. Before its begin it is the phase's
 // begin.
 inline double time_in_phase(const Phase& phase, double distance_mm) {
@@ -50,5 +54,15 @@ inline double time_in_phase(const Phase& phase, double distance_mm) {
 // The speeds at the ends must be reachable from each other over the length.
 Profile trapezoid(double length_mm, double start_speed_mm_s, double end_speed_mm_s,
                   double top_speed_mm_s, double acceleration_mm_s2);
+
+struct RampLimits {
+    double acceleration_mm_s2 = 0;
+    double jerk_mm_s3 = 0;
+};
+
+double reachable_mm_s(double speed_mm_s, double length_mm, const RampLimits& limits);
+
+Profile s_curve(double length_mm, double start_speed_mm_s, double end_speed_mm_s,
+                double top_speed_mm_s, const RampLimits& limits);
 
 }  // namespace lyr::motion

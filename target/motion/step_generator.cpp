@@ -13,7 +13,7 @@ constexpr std::int64_t never_ns = std::numeric_limits<std::int64_t>::max();
 
 }  // namespace
 
-StepGenerator::StepGenerator(const Kinematics& kinematics, const Point& origin)
+StepGenerator::StepGenerator(const LinearKinematics& kinematics, const Point& origin)
     : kinematics_(kinematics), origin_(origin) {
     next_ns_.fill(never_ns);
 }

@@ -40,7 +40,7 @@ using StepCounts = std::array<std::int64_t, motor_count>;
 class StepGenerator {
 public:
     // All motors are at count 0 at the origin.
-    StepGenerator(const Kinematics& kinematics, const Point& origin);
+    StepGenerator(const LinearKinematics& kinematics, const Point& origin);
 
     // The next move; all events of the one before must have been taken.
     void start(const PlannedMove& planned);
@@ -59,7 +59,7 @@ private:
     void find(std::size_t motor);
     void take(std::size_t motor, StepEvent& event);
 
-    Kinematics kinematics_;
+    LinearKinematics kinematics_;
     Point origin_;
     Profile profile_;
     std::int64_t start_ns_ = 0;

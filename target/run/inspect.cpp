@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "target/moves/move_maker.h"
+#include "target/run/reach.h"
 
 namespace lyr::run {
 namespace {
@@ -96,6 +97,8 @@ Result<Inspection> inspect(const std::string& path, const config::Printer& print
         const Box box = box_of(curve);
         if (const Status in_range = check_range(box, curve, path, printer); !in_range)
             return in_range.error();
+        if (const Status reached = check_reach(curve, path, printer); !reached)
+            return reached.error();
         all.include(box.low_mm);
         all.include(box.high_mm);
     }

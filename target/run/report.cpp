@@ -6,6 +6,7 @@
 #include <cstdarg>
 #include <cstdio>
 
+#include "target/motion/time_walk.h"
 #include "target/run/simulate.h"
 
 namespace lyr::run {
@@ -142,6 +143,12 @@ void append_json_axes(std::string& text, const SimulationReport& report) {
     text += '}';
 }
 
+// What an axis may lag behind while its motor makes up for its play.
+double lag_steps(const config::Printer& printer, std::size_t axis) {
+    if (axis >= printer.backlash_mm.size()) return 0;
+    return motion::Play::lag(printer.backlash_mm[axis] * printer.axes[axis].steps_per_mm);
+}
+
 }  // namespace
 
 double SimulationReport::worst_steps() const {
@@ -151,9 +158,9 @@ double SimulationReport::worst_steps() const {
 
 bool SimulationReport::within_limits() const {
     for (std::size_t i = 0; i < axis_count; ++i) {
-        const config::Axis& axis = printer.axes[i];
-        const double in_a_ns = axis.max_speed_mm_s * axis.steps_per_mm / ns_per_s;
-        const double limit = half_step + in_a_ns + rounding_steps;
+        const double in_a_ns =
+            config::fastest_motor_mm_s(printer, i) * printer.axes[i].steps_per_mm / ns_per_s;
+        const double limit = half_step + in_a_ns + rounding_steps + lag_steps(printer, i);
         if (!(path.steps[i] <= limit) || !(planned_steps[i] <= limit)) return false;
     }
     return std::all_of(spacings.begin(), spacings.end(), [this](const Spacing& spacing) {

@@ -11,8 +11,8 @@
 #include "target/run/event_stream.h"
 #include "target/run/executor.h"
 #include "target/run/heating.h"
-#include "target/run/plan_check.h"
 #include "target/run/simulated_clock.h"
+#include "target/run/step_checks.h"
 
 namespace lyr::run {
 namespace {
@@ -21,16 +21,6 @@ constexpr double ns_per_s = 1e9;
 
 // Progress and stop are asked for after so many batches of events.
 constexpr std::uint64_t batches_between_questions = 64;
-
-AxisValues steps_per_mm(const config::Printer& printer) {
-    AxisValues values{};
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] = printer.axes[i].steps_per_mm;
-    return values;
-}
-
-AxisValues start_mm(const config::Printer& printer) {
-    return {printer.start_mm[0], printer.start_mm[1], printer.start_mm[2], 0};
-}
 
 Diagnostic stopped() {
     return {Severity::error, ExitStatus::stopped, "the simulation was stopped on request", {}};
@@ -58,13 +48,8 @@ public:
           clock_(heat_, attendant_, stop_),
           stream_(std::move(stream)),
           file_(std::move(file)),
-          path_check_(steps_per_mm(job.printer), start_mm(job.printer),
-                      [this](PathCurve& curve) { return file_.next(curve); }),
-          plan_check_(steps_per_mm(job.printer), start_mm(job.printer)),
-          decoder_([this](const DecodedStep& step) {
-              path_check_.step(step);
-              plan_check_.step(step);
-          }),
+          checks_(job.printer, [this](PathCurve& curve) { return file_.next(curve); }),
+          decoder_([this](const DecodedStep& step) { checks_.step(step); }),
           layout_(line_layout(job.printer)),
           mock_(layout_.names.size(), clock_,
                 [this](const gpio::LineWrite& write) { decode(write); }) {}
@@ -94,8 +79,7 @@ private:
     const Executor* executor_ = nullptr;
     EventStream stream_;
     FilePath file_;
-    PathCheck path_check_;
-    PlanCheck plan_check_;
+    StepChecks checks_;
     PulseDecoder decoder_;
     LineLayout layout_;
     gpio::MockChip mock_;
@@ -113,9 +97,7 @@ Status Simulation::run(ReplaceFile* trace) {
     print_time_s_ = static_cast<double>(executor.time_ns()) / ns_per_s;
     waited_s_ = static_cast<double>(executor.waited_ns()) / ns_per_s;
     if (!pumped) return pumped;
-    path_check_.finish(decoder_.positions());
-    plan_check_.finish(decoder_.positions());
-    if (!path_check_.status()) return path_check_.status();
+    if (Status followed = checks_.finish(decoder_.positions()); !followed) return followed;
     Status released = chip.release();
     if (tracing) tracing->finish();
     executor_ = nullptr;
@@ -128,7 +110,7 @@ Status Simulation::pump(Executor& executor, ReplaceFile* trace) {
         events.clear();
         const Result<bool> more = stream_.next(events);
         if (!more) return more.error();
-        plan_check_.expect(stream_.steps().moves(), stream_.schedule().take_shifts());
+        checks_.expect(stream_.steps().moves(), stream_.schedule().take_shifts());
         const Result<bool> executed = executor.execute(events);
         if (!executed) return executed.error();
         if (!*executed) return tripped(heat_, stream_.steps().layer());
@@ -157,8 +139,8 @@ SimulationReport Simulation::report() const {
     for (std::size_t i = 0; i < report.pulses.size(); ++i) report.pulses[i] = decoder_.figures(i);
     report.positions = decoder_.positions();
     report.writes = decoder_.writes();
-    report.path = path_check_.deviation();
-    report.planned_steps = plan_check_.deviation_steps();
+    report.path = checks_.off_file();
+    report.planned_steps = checks_.off_plan();
     report.waited_s = waited_s_;
     for (std::size_t i = 0; i < config::heater_count; ++i) {
         const thermal::HeaterStatus* status = heat_.control().status(i);

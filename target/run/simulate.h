@@ -5,8 +5,9 @@
 //  1. Everything but clock and lines is what a real print runs: the same reader, interpreter, planner,
 //     pulses and executor, in the same order.
 //  2. The report's deviation is that between the positions decoded from the lines and
-//       a. the curves of the file, read and decoded a second time (path_check.h),
-//       b. the planned motion at the same time, at every step, between steps and at the end.
+//       a. the curves of the file, read and decoded a second time (path_check.h; step_checks.h for machines
+//          that are not plain Cartesian ones),
+//       b. the planned and shaped motion at the same time, at every step, between steps and at the end.
 //  3. within_limits() says that no axis ever deviated, in either sense, by more than half a step, what the
 //     axis moves at its highest speed in the nanosecond that times are rounded to, and a millionth of a
 //     step for rounding together; and that no pulse was shorter than the printer's file asks.

@@ -10,15 +10,9 @@ namespace lyr::run {
 namespace {
 
 constexpr std::size_t batch_events = 2048;
+constexpr double ns_per_s = 1e9;
 // Orders that stand between the moves of a full planner are fewer, but for a file that means harm.
 constexpr std::size_t most_waiting = 4 * motion::Planner::default_capacity;
-
-motion::Kinematics kinematics_of(const config::Printer& printer) {
-    motion::Cartesian cartesian;
-    for (std::size_t i = 0; i < cartesian.steps_per_mm.size(); ++i)
-        cartesian.steps_per_mm[i] = printer.axes[i].steps_per_mm;
-    return cartesian;
-}
 
 void append_steps(const motion::StepEvent& event, std::vector<Step>& steps) {
     for (unsigned motors = event.motors; motors; motors &= motors - 1) {
@@ -36,18 +30,16 @@ Result<StepStream> StepStream::open(const std::string& path, const config::Print
     if (!reader) return reader.error();
     Result<motion::Planner> planner = motion::Planner::create(motion_limits(printer));
     if (!planner) return planner.error();
-    const motion::Point origin{printer.start_mm[0], printer.start_mm[1], printer.start_mm[2]};
     return StepStream(path, Interpreter(std::move(*reader), printer, filament_diameter_mm),
-                      std::move(*planner), motion::StepGenerator(kinematics_of(printer), origin),
-                      orders);
+                      std::move(*planner), MotorSteps(printer), orders);
 }
 
 StepStream::StepStream(std::string path, Interpreter interpreter, motion::Planner planner,
-                       motion::StepGenerator generator, OrderQueue* orders)
+                       MotorSteps generator, OrderQueue* orders)
     : path_(std::move(path)),
       interpreter_(std::move(interpreter)),
       planner_(std::move(planner)),
-      generator_(generator),
+      generator_(std::move(generator)),
       orders_(orders),
       events_(batch_events) {}
 
@@ -55,26 +47,43 @@ Result<bool> StepStream::next(std::vector<Step>& steps) {
     moves_.clear();
     std::size_t room = batch_events;
     while (room > 0) {
-        const std::span<motion::StepEvent> wanted(events_.data(), room);
-        const std::size_t count = generator_.next(wanted);
-        for (const motion::StepEvent& event : wanted.first(count)) append_steps(event, steps);
-        room -= count;
+        room -= take(room, steps);
         if (room == 0) break;
         motion::PlannedMove& move = moves_.emplace_back();
         while (!planner_.pop(move)) {
             if (read_all_) {
                 moves_.pop_back();
-                give_orders(planner_.time_ns(), steps);
-                return false;
+                return finish(steps);
             }
             if (const Status planned = plan(); !planned) return planned.error();
         }
         layer_ = move.tag;
-        give_orders(move.start_ns, steps);
+        if (!waiting_.empty() && waiting_.front().before_move <= popped_) {
+            // What lags behind the plan comes first.
+            generator_.rest_until(move.start_ns);
+            while (take(events_.size(), steps) == events_.size()) continue;
+            give_orders(move.start_ns, steps);
+        }
         ++popped_;
         generator_.start(move);
     }
     return true;
+}
+
+// The steps that come after the last move; false when there are no more.
+bool StepStream::finish(std::vector<Step>& steps) {
+    generator_.finish();
+    if (take(events_.size(), steps) == events_.size()) return true;
+    give_orders(time_ns(), steps);
+    return false;
+}
+
+std::size_t StepStream::take(std::size_t most, std::vector<Step>& steps) {
+    const std::size_t count = generator_.next(std::span(events_).first(most));
+    for (const motion::StepEvent& event : std::span(events_).first(count))
+        append_steps(event, steps);
+    if (count > 0) last_ns_ = events_[count - 1].time_ns;
+    return count;
 }
 
 // Feeds the planner until it is full or the file ends.
@@ -114,7 +123,8 @@ Status StepStream::plan(const motion::Move& move) {
 
 Status StepStream::plan(const HeatOrder& order) {
     if (!orders_) return Done{};
-    if (order.is_gate()) planner_.dwell(0);
+    // All motors rest when the head does, and what lags behind it has come.
+    if (order.is_gate()) planner_.dwell(static_cast<double>(generator_.tail_ns()) / ns_per_s);
     const bool same_place = !waiting_.empty() && waiting_.back().before_move == pushed_;
     if (same_place && join(waiting_.back().order, order)) return Done{};
     if (waiting_.size() == most_waiting)
@@ -127,10 +137,14 @@ Status StepStream::plan(const HeatOrder& order) {
 }
 
 void StepStream::give_orders(std::int64_t time_ns, std::vector<Step>& steps) {
+    // Without a rest, steps of the next move that run ahead of it follow closely.
+    const bool lags = generator_.tail_ns() > 0;
     for (; !waiting_.empty() && waiting_.front().before_move <= popped_; waiting_.pop_front()) {
         const HeatOrder& order = waiting_.front().order;
         orders_->push(order);
-        steps.push_back({time_ns, mark_axis, order.is_gate()});
+        steps.push_back(
+            {lags && !order.is_gate() ? last_ns_ : time_ns, mark_axis, order.is_gate()});
+        last_ns_ = steps.back().time_ns;
     }
 }
 

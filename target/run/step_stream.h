@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "target/motion/planner.h"
-#include "target/motion/step_generator.h"
 #include "target/run/interpreter.h"
+#include "target/run/motor_steps.h"
 #include "target/run/pulse_schedule.h"
 
 namespace lyr::run {
@@ -31,8 +31,8 @@ public:
     Result<bool> next(std::vector<Step>& steps);
 
     const std::vector<motion::PlannedMove>& moves() const { return moves_; }
-    // Where the move begun last ends, or a rest after it.
-    std::int64_t time_ns() const { return planner_.time_ns(); }
+    // Where the move begun last ends, or a rest after it; the last steps may come so late.
+    std::int64_t time_ns() const { return planner_.time_ns() + generator_.tail_ns(); }
     // Of the move begun last, from 1; 0 before the first.
     std::uint32_t layer() const { return layer_; }
 
@@ -44,18 +44,21 @@ private:
     };
 
     StepStream(std::string path, Interpreter interpreter, motion::Planner planner,
-               motion::StepGenerator generator, OrderQueue* orders);
+               MotorSteps generator, OrderQueue* orders);
 
     Status plan();
     Status plan(const motion::Move& move);
     Status plan(const HeatOrder& order);
+    // Appends the next steps of what is known, at most so many; how many events they were.
+    std::size_t take(std::size_t most, std::vector<Step>& steps);
+    bool finish(std::vector<Step>& steps);
     // The orders that stand before the move that begins.
     void give_orders(std::int64_t time_ns, std::vector<Step>& steps);
 
     std::string path_;  // for messages
     Interpreter interpreter_;
     motion::Planner planner_;
-    motion::StepGenerator generator_;
+    MotorSteps generator_;
     std::optional<Instruction> held_;  // for when the planner has room again
     bool read_all_ = false;
     OrderQueue* orders_;
@@ -64,6 +67,7 @@ private:
     std::vector<motion::PlannedMove> moves_;
     std::vector<motion::StepEvent> events_;
     std::uint32_t layer_ = 0;
+    std::int64_t last_ns_ = 0;  // of the steps so far
 };
 
 }  // namespace lyr::run

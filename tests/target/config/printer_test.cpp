@@ -141,7 +141,8 @@ TEST_CASE("printer 2: wrong types and ranges come with line, rule and what was f
     check_error(with("= 17", "= { chip = \"gpiochip0\" }"), 10, "expected `line`");
     check_error(with("invert = true", "invert = 1"), 18, "expected true or false, found 1");
     check_error(with("name = \"test\"", "name = \"\""), 1, "empty");
-    check_error(with("name = \"test\"", "kinematics = \"delta\""), 1, "cartesian");
+    check_error(with("name = \"test\"", "kinematics = \"scara\""), 1,
+                "expected \"cartesian\", \"corexy\" or \"delta\"");
     check_error(with("name = \"test\"", "name = \"test\"\njunction_deviation_mm = 2"), 2, "0 to 1");
     check_error(with("[pulse]\nhigh_us = 1.5", "pulse = 3"), 3, "expected a section [pulse]");
     check_error(with("= 1.5", "= 0"), 4, "0.05 to 1000");

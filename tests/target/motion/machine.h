@@ -111,6 +111,12 @@ public:
         return axes;
     }
 
+    // Of a move's length, after a time.
+    Real share(std::size_t index, Real time_s) const {
+        const Profile& profile = run_.plan[index].profile;
+        return distance(profile, time_s) / profile.length_mm;
+    }
+
     // In steps from the origin.
     Real steps_at_ns(std::size_t motor, Real time_ns) { return steps(motor, at_ns(time_ns)); }
     Real steps(std::size_t motor, const AxisReals& axes) const {
@@ -126,7 +132,8 @@ private:
         while (i > 0 && profile.phases[i].time_s > time_s) --i;
         const Phase& phase = profile.phases[i];
         const Real t = time_s - phase.time_s;
-        return phase.distance_mm + t * (phase.speed_mm_s + t * phase.acceleration_mm_s2 / 2);
+        return phase.distance_mm + t * (phase.speed_mm_s + t * (phase.acceleration_mm_s2 / 2 +
+                                                                t * phase.jerk_mm_s3 / 6));
     }
     static AxisReals at(const Line& line, Real share) {
         const auto between = [share](Real from, Real to) { return from + share * (to - from); };

@@ -63,4 +63,63 @@ TEST_CASE("profile 3: no faster one exists, for some phase is at the top or none
     CHECK(even_mm < 1e-15);
 }
 
+TEST_CASE("profile 4: an S-curve from rest to rest takes what theory says") {
+    // Acceleration and jerk times of 0.05 and 0.01 s: 3 mm each way.
+    const Profile whole = s_curve(100, 0, 0, 50, {1000, 1e5});
+    CHECK(whole.duration_s ==
+          doctest::Approx(100.0 / 50 + 50.0 / 1000 + 1000 / 1e5).epsilon(1e-12));
+    // Too short for either limit: four jerks of (s / 2j)^(1/3).
+    const Profile brief = s_curve(1e-3, 0, 0, 50, {1000, 1e5});
+    CHECK(brief.duration_s == doctest::Approx(4 * std::cbrt(1e-3 / 2e5)).epsilon(1e-9));
+    CHECK(brief.speed_at(brief.duration_s / 2) ==
+          doctest::Approx(1e5 * std::pow(std::cbrt(1e-3 / 2e5), 2)).epsilon(1e-9));
+}
+
+TEST_CASE("profile 1, 2, 4, 5: S-curves keep their limits, and reach what is reachable") {
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> share(0, 1);
+    for (int i = 0; i < 5000; ++i) {
+        const double length = std::pow(10, 6 * share(random) - 4), top = 1 + 300 * share(random);
+        const RampLimits limits{100 + 5000 * share(random), std::pow(10, 3 + 4 * share(random))};
+        const double v = i % 5 ? top * share(random) : 0;
+        const double reached = reachable_mm_s(v, length, limits);
+        REQUIRE(reached >= v);
+        const double w =
+            i % 3 ? v + (std::min(top, reached) - v) * share(random) : std::min(top, reached);
+        for (const bool up : {true, false}) {
+            const Profile profile = s_curve(length, up ? v : w, up ? w : v, top, limits);
+            REQUIRE(profile.distance_at(profile.duration_s) ==
+                    doctest::Approx(length).epsilon(1e-9));
+            REQUIRE(profile.time_at(length / 3) <= profile.duration_s);
+            REQUIRE(profile.distance_at(profile.time_at(length / 3)) ==
+                    doctest::Approx(length / 3).epsilon(1e-9));
+            for (std::size_t k = 0; k < Profile::phase_count; ++k) {
+                const Phase& phase = profile.phases[k];
+                const double end_s = k + 1 < Profile::phase_count ? profile.phases[k + 1].time_s
+                                                                  : profile.duration_s;
+                const double lasts_s = end_s - phase.time_s;
+                if (!(lasts_s > 0)) continue;
+                const double end_mm_s2 = phase.acceleration_mm_s2 + phase.jerk_mm_s3 * lasts_s;
+                constexpr double rounding = 1 + 1e-6;
+                REQUIRE(phase.speed_mm_s <= top * rounding);
+                REQUIRE(std::abs(phase.acceleration_mm_s2) <= limits.acceleration_mm_s2 * rounding);
+                REQUIRE(std::abs(end_mm_s2) <= limits.acceleration_mm_s2 * rounding);
+                // A change of speed of which only a few digits are left needs the jerk of the rounded one.
+                const double rounded_mm_s3 = 1e-13 * top / (lasts_s * lasts_s);
+                REQUIRE(std::abs(phase.jerk_mm_s3) <= limits.jerk_mm_s3 * rounding + rounded_mm_s3);
+                if (k + 1 == Profile::phase_count) break;
+                const Phase& next = profile.phases[k + 1];
+                REQUIRE(next.distance_mm == doctest::Approx(profile.distance_at(end_s)));
+                REQUIRE(std::abs(phase.speed_mm_s +
+                                 lasts_s * (phase.acceleration_mm_s2 + end_mm_s2) / 2 -
+                                 next.speed_mm_s) < 1e-6 * top);
+            }
+        }
+        if (reached > top) continue;
+        // And no more: what is reached takes the whole length.
+        const Profile all = s_curve(length, v, reached, reached, limits);
+        REQUIRE(all.duration_s * (v + reached) / 2 == doctest::Approx(length).epsilon(1e-9));
+    }
+}
+
 }  // namespace lyr::motion

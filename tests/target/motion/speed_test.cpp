@@ -4,9 +4,12 @@
 
 #include <bit>
 #include <chrono>
+#include <cmath>
+#include <numbers>
 #include <string>
 
 #include "machine.h"
+#include "target/motion/shaper.h"
 
 namespace lyr::motion {
 namespace {
@@ -45,10 +48,55 @@ Rate rate_of(const test::Job& job) {
             static_cast<double>(job.moves.size()) / took_s.count()};
 }
 
-void report(const std::string& what, const test::Job& job) {
-    const Rate rate = rate_of(job);
+Rate timed_rate_of(const test::Job& job, const Kinematics& machine, const Shaping& shaping) {
+    const std::vector<PlannedMove> plan = test::plan_of(job);
+    TimedGenerator generator(machine, job.origin, shaping);
+    std::array<StepEvent, 2048> events;
+    std::uint64_t steps = 0;
+    const auto step_all = [&] {
+        std::size_t count;
+        do {
+            count = generator.next(events);
+            for (std::size_t i = 0; i < count; ++i)
+                steps += static_cast<unsigned>(std::popcount(events[i].motors));
+        } while (count == events.size());
+    };
+    const auto start = std::chrono::steady_clock::now();
+    for (const PlannedMove& planned : plan) {
+        generator.start(planned);
+        step_all();
+    }
+    generator.finish();
+    step_all();
+    const std::chrono::duration<double> took_s = std::chrono::steady_clock::now() - start;
+    return {static_cast<double>(steps) / took_s.count(),
+            static_cast<double>(plan.size()) / took_s.count()};
+}
+
+void report(const std::string& what, const Rate& rate) {
     MESSAGE(what, ": ", rate.steps_per_s / 1e6, " million steps/s, ", rate.moves_per_s / 1e6,
             " million moves/s");
+}
+
+void report(const std::string& what, const test::Job& job) {
+    report(what, rate_of(job));
+}
+
+Delta delta_of(double steps_per_mm) {
+    Delta delta{{steps_per_mm, steps_per_mm, steps_per_mm, 415}, {}};
+    for (std::size_t i = 0; i < Delta::tower_count; ++i) {
+        const double angle_rad = (210.0 + 120.0 * static_cast<double>(i)) * std::numbers::pi / 180;
+        delta.towers[i] = {120 * std::cos(angle_rad), 120 * std::sin(angle_rad), 288};
+    }
+    return delta;
+}
+
+Shaping all_shaped() {
+    Shaping shaping;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        shaping.axes[axis] = taps_of(Shaper{ShaperKind::ei, 40, 0.1}, axis);
+    shaping.extruder = taps_of(PressureAdvance{0.05, 0.04});
+    return shaping;
 }
 
 }  // namespace
@@ -74,6 +122,40 @@ TEST_CASE("speed: steps and moves per second on one core" * doctest::skip()) {
         at = to;
     }
     report("lines of 0.1 mm", tiny);
+}
+
+TEST_CASE("speed: the same with every option" * doctest::skip()) {
+    const Point a{-30, -40, 0}, b{50, 20, 0};
+    for (const double jerk_mm_s3 : {0.0, 1e5}) {
+        test::Job lines;
+        lines.limits.jerk_mm_s3 = jerk_mm_s3;
+        for (int i = 0; i < 200; ++i)
+            lines.moves.push_back({i % 2 ? Line{b, a, 4} : Line{a, b, 4}, 100, 0, 0});
+        test::Job circles = lines;
+        for (std::size_t i = 0; i < circles.moves.size(); ++i)
+            circles.moves[i].path = circle_about(a, -20, -30, i % 2 == 0, 0, 4);
+        test::Job brief = lines;
+        brief.moves.clear();
+        Point at;
+        for (int i = 0; i < 40'000; ++i) {
+            const Point to{at.x + (i / 80 % 2 ? -0.5 : 0.5), i % 2 ? 0.01 : 0, 0};
+            brief.moves.push_back({Line{at, to, 0.015}, 100, 0, 0});
+            at = to;
+        }
+        const std::array<double, axis_count> steps{80, 80, 400, 415};
+        for (const auto& [what, job] :
+             {std::pair<std::string, const test::Job&>{"lines of 100 mm", lines},
+              {"circles of radius 14 mm", circles},
+              {"lines of 0.5 mm", brief}}) {
+            const std::string with = what + (jerk_mm_s3 > 0 ? ", S-curves" : "");
+            report(with + ", CoreXY", timed_rate_of(job, CoreXy{steps}, {}));
+            report(with + ", CoreXY, EI, pressure advance",
+                   timed_rate_of(job, CoreXy{steps}, all_shaped()));
+            report(with + ", delta", timed_rate_of(job, delta_of(80), {}));
+            report(with + ", delta, EI, pressure advance",
+                   timed_rate_of(job, delta_of(80), all_shaped()));
+        }
+    }
 }
 
 }  // namespace lyr::motion

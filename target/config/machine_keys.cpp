@@ -1,0 +1,184 @@
+#include "target/config/machine_keys.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string_view>
+
+namespace lyr::config {
+namespace {
+
+constexpr std::array<std::string_view, 3> kinematics_names{"cartesian", "corexy", "delta"};
+constexpr std::array<std::string_view, 4> shaper_names{"none", "zv", "mzv", "ei"};
+
+struct Interval {
+    double low, high;
+};
+
+std::string numbered(const char* format, double a, double b) {
+    std::array<char, 160> text{};
+    std::snprintf(text.data(), text.size(), format, a, b);
+    return text.data();
+}
+
+std::string expected_in(Interval interval) {
+    return numbered("expected a number from %g to %g", interval.low, interval.high);
+}
+
+std::optional<double> number_of(const toml::node& node, Interval interval) {
+    if (!node.is_number()) return std::nullopt;
+    const std::optional<double> value = node.value<double>();
+    // False for what is not a number, too.
+    if (!value || !(*value >= interval.low && *value <= interval.high)) return std::nullopt;
+    return value;
+}
+
+using Store = std::function<void(Draft&, double)>;
+
+Key number_key(std::string path, Interval interval, const Store& store) {
+    return {std::move(path), false, false,
+            [interval, store](const toml::node& node, Draft& draft) -> Complaint {
+                const std::optional<double> value = number_of(node, interval);
+                if (!value) return expected_in(interval);
+                store(draft, *value);
+                return std::nullopt;
+            }};
+}
+
+// One number for all three towers, or a list of three.
+Key towers_key(std::string path, Interval interval, std::array<double, 3> DeltaFrame::*field) {
+    return {std::move(path), false, false,
+            [interval, field](const toml::node& node, Draft& draft) -> Complaint {
+                std::array<double, 3> values{};
+                const auto* list = node.as_array();
+                if (list && list->size() != values.size())
+                    return "expected a number or a list of three";
+                for (std::size_t i = 0; i < values.size(); ++i) {
+                    const auto value = number_of(list ? *list->get(i) : node, interval);
+                    if (!value) return expected_in(interval) + ", or a list of three";
+                    values[i] = *value;
+                }
+                draft.printer.delta.*field = values;
+                return std::nullopt;
+            }};
+}
+
+template <std::size_t N>
+std::string choice_of(const std::array<std::string_view, N>& names) {
+    std::string text = "expected ";
+    for (std::size_t i = 0; i < N; ++i)
+        text += (i == 0 ? "\"" : i + 1 < N ? "\", \"" : "\" or \"") + std::string(names[i]);
+    return text + '"';
+}
+
+template <std::size_t N>
+Key choice_key(std::string path, const std::array<std::string_view, N>& names,
+               const std::function<void(Draft&, std::size_t)>& store) {
+    return {std::move(path), false, false,
+            [&names, store](const toml::node& node, Draft& draft) -> Complaint {
+                const std::optional<std::string> value = node.value<std::string>();
+                for (std::size_t i = 0; value && i < N; ++i)
+                    if (*value == names[i]) {
+                        store(draft, i);
+                        return std::nullopt;
+                    }
+                return choice_of(names);
+            }};
+}
+
+void append_shaper(std::vector<Key>& keys, std::size_t axis) {
+    const std::string path = "shaper." + std::string(axis_names[axis]) + '.';
+    keys.push_back(choice_key(path + "kind", shaper_names, [axis](Draft& d, std::size_t kind) {
+        d.printer.shapers[axis].kind = static_cast<ShaperKind>(kind);
+    }));
+    // Below, the copies of a motion are a second apart; above, no frame of a printer vibrates.
+    keys.push_back(number_key(path + "frequency_hz", {2, 500}, [axis](Draft& d, double value) {
+        d.printer.shapers[axis].frequency_hz = value;
+    }));
+    keys.push_back(number_key(path + "damping", {0, 0.9}, [axis](Draft& d, double value) {
+        d.printer.shapers[axis].damping = value;
+    }));
+}
+
+void append_delta_problems(const Printer& printer,
+                           const std::function<bool(const std::string&)>& given,
+                           Problems& problems) {
+    bool whole = true;
+    for (const char* key : {"delta.arm_mm", "delta.radius_mm", "delta.reach_mm"}) {
+        if (given(key)) continue;
+        problems.emplace_back(key, " is missing: kinematics = \"delta\" needs it");
+        whole = false;
+    }
+    if (!whole) return;
+    const DeltaFrame& frame = printer.delta;
+    for (std::size_t i = 0; i < frame.arm_mm.size(); ++i)
+        if (frame.radius_mm[i] + frame.reach_mm > flattest_arm_share * frame.arm_mm[i]) {
+            problems.emplace_back(
+                "delta.reach_mm",
+                numbered(": an arm of %g mm reaches %g mm from the middle at the most",
+                         frame.arm_mm[i],
+                         std::max(0.0, flattest_arm_share * frame.arm_mm[i] - frame.radius_mm[i])));
+            break;
+        }
+    if (std::hypot(printer.start_mm[0], printer.start_mm[1]) > frame.reach_mm)
+        problems.emplace_back("start_mm", ": farther from the middle than delta.reach_mm");
+}
+
+}  // namespace
+
+void append_machine_keys(std::vector<Key>& keys) {
+    keys.push_back(choice_key("kinematics", kinematics_names, [](Draft& d, std::size_t kind) {
+        d.printer.kinematics = static_cast<Kinematics>(kind);
+    }));
+    keys.push_back(number_key("max_jerk_mm_s3", {0, 1e9},
+                              [](Draft& d, double v) { d.printer.max_jerk_mm_s3 = v; }));
+    keys.push_back(towers_key("delta.arm_mm", {1, 10'000}, &DeltaFrame::arm_mm));
+    keys.push_back(towers_key("delta.radius_mm", {1, 10'000}, &DeltaFrame::radius_mm));
+    keys.push_back(towers_key("delta.tower_angle_deg", {-360, 360}, &DeltaFrame::tower_angle_deg));
+    keys.push_back(number_key("delta.reach_mm", {1, 10'000},
+                              [](Draft& d, double v) { d.printer.delta.reach_mm = v; }));
+    for (std::size_t axis = axis_x; axis <= axis_z; ++axis) {
+        append_shaper(keys, axis);
+        keys.push_back(number_key("axis." + std::string(axis_names[axis]) + ".backlash_mm", {0, 2},
+                                  [axis](Draft& d, double v) { d.printer.backlash_mm[axis] = v; }));
+    }
+    keys.push_back(number_key("pressure_advance.advance_s", {0, 2},
+                              [](Draft& d, double v) { d.printer.pressure_advance_s = v; }));
+    keys.push_back(number_key("pressure_advance.smooth_s", {0.001, 0.2},
+                              [](Draft& d, double v) { d.printer.pressure_smooth_s = v; }));
+}
+
+Problems machine_problems(const Printer& printer,
+                          const std::function<bool(const std::string&)>& given) {
+    Problems problems;
+    if (printer.kinematics == Kinematics::delta) {
+        append_delta_problems(printer, given, problems);
+    } else if (given("delta")) {
+        problems.emplace_back("delta", ": only for kinematics = \"delta\"");
+    }
+    if (printer.max_jerk_mm_s3 > 0 && printer.max_jerk_mm_s3 < 1)
+        problems.emplace_back("max_jerk_mm_s3", ": expected 0 for no limit, or a number from 1 on");
+    for (std::size_t axis = axis_x; axis <= axis_z; ++axis) {
+        const std::string path = "shaper." + std::string(axis_names[axis]);
+        if (printer.shapers[axis].kind != ShaperKind::none && !given(path + ".frequency_hz"))
+            problems.emplace_back(path + ".kind", ": needs frequency_hz beside it");
+    }
+    return problems;
+}
+
+double fastest_motor_mm_s(const Printer& printer, std::size_t motor) {
+    const double x = printer.axes[axis_x].max_speed_mm_s, y = printer.axes[axis_y].max_speed_mm_s;
+    if (motor == axis_e || printer.kinematics == Kinematics::cartesian)
+        return printer.axes[motor].max_speed_mm_s;
+    if (printer.kinematics == Kinematics::corexy)
+        return motor == axis_z ? printer.axes[axis_z].max_speed_mm_s : x + y;
+    const double off_mm = printer.delta.radius_mm[motor] + printer.delta.reach_mm;
+    const double arm_mm = printer.delta.arm_mm[motor];
+    const double height_mm = std::sqrt(std::max(0.0, (arm_mm - off_mm) * (arm_mm + off_mm)));
+    // Without a frame there is nothing to say yet; that is another error.
+    const double steepest = height_mm > 0 ? off_mm / height_mm : 0;
+    return printer.axes[axis_z].max_speed_mm_s + std::hypot(x, y) * steepest;
+}
+
+}  // namespace lyr::config

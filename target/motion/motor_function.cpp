@@ -1,0 +1,221 @@
+#include "target/motion/motor_function.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace lyr::motion {
+namespace {
+
+constexpr double ns_per_s = 1e9;
+constexpr std::int64_t forever_ns = std::numeric_limits<std::int64_t>::max();
+// What is left of a phase when it is as good as over: the rounding of a day in seconds, and a thousandth
+// of what a step's time is rounded to.
+constexpr double instant_s = 1e-12;
+// An arm that lies flatter than this share of its length would pull sideways only; nothing but the
+// bounds needs it, reach is checked before.
+constexpr double least_height_share = 0.05;
+
+}  // namespace
+
+Instant Instant::after(double time_s) const {
+    const double sum_ns = part_ns + time_s * ns_per_s;
+    const double whole_ns = std::floor(sum_ns);
+    return {ns + static_cast<std::int64_t>(whole_ns), sum_ns - whole_ns};
+}
+
+MotorFunction::MotorFunction(const Taps& taps, bool is_carriage) : is_carriage_(is_carriage) {
+    for (const Tap& tap : taps) cursors_.push_back({tap, 0, 0});
+}
+
+MotorFunction MotorFunction::sum(const Taps& taps, double start_steps) {
+    MotorFunction function(taps, false);
+    function.start_ = start_steps;
+    return function;
+}
+
+MotorFunction MotorFunction::carriage(const Taps& taps, const Delta::Tower& tower,
+                                      double steps_per_mm, double start_mm) {
+    MotorFunction function(taps, true);
+    function.tower_ = tower;
+    function.steps_per_mm_ = steps_per_mm;
+    function.start_ = start_mm;
+    return function;
+}
+
+std::uint64_t MotorFunction::oldest_move() const {
+    std::uint64_t oldest = std::numeric_limits<std::uint64_t>::max();
+    for (const Cursor& cursor : cursors_) oldest = std::min(oldest, cursor.move);
+    return oldest;
+}
+
+std::int64_t MotorFunction::ahead_ns() const {
+    std::int64_t ahead_ns = 0;
+    for (const Cursor& cursor : cursors_) ahead_ns = std::max(ahead_ns, cursor.tap.offset_ns);
+    return ahead_ns;
+}
+
+std::int64_t MotorFunction::behind_ns() const {
+    std::int64_t behind_ns = 0;
+    for (const Cursor& cursor : cursors_) behind_ns = std::max(behind_ns, -cursor.tap.offset_ns);
+    return behind_ns;
+}
+
+Known MotorFunction::begin_piece(const MoveWindow& window, const Instant& begin) {
+    if (window.end() == 0)
+        return window.rests_until_ns() == forever_ns ? Known::rests_forever : Known::nothing_yet;
+    for (Smooth& smooth : smooth_) smooth.clear();
+    duration_s_ = std::numeric_limits<double>::infinity();
+    for (Cursor& cursor : cursors_)
+        if (!add(cursor, window, begin)) return Known::nothing_yet;
+    if (duration_s_ == std::numeric_limits<double>::infinity()) {
+        duration_s_ = 0;
+        return Known::rests_forever;
+    }
+    limit_jerk();
+    return Known::piece;
+}
+
+bool MotorFunction::add(Cursor& cursor, const MoveWindow& window, const Instant& begin) {
+    const Instant here{begin.ns + cursor.tap.offset_ns, begin.part_ns};
+    for (;;) {
+        const ChannelMove& move = window.at(cursor.move);
+        const double since_s = here.seconds_since({move.start_ns, move.start_part_ns});
+        if (since_s < -instant_s) {
+            // Before the first move; before a later one its predecessor still has the cursor.
+            add_rest(cursor.tap, move.from);
+            end_no_later_than(-since_s);
+            return true;
+        }
+        if (move.profile.duration_s - since_s > instant_s) {
+            add_moving(cursor, move, since_s);
+            return true;
+        }
+        if (cursor.move + 1 == window.end()) {
+            const std::int64_t until_ns = window.rests_until_ns();
+            if (until_ns <= here.ns) return false;
+            add_rest(cursor.tap, move.to);
+            if (until_ns != forever_ns) end_no_later_than(Instant{until_ns, 0}.seconds_since(here));
+            return true;
+        }
+        const ChannelMove& next = window.at(cursor.move + 1);
+        const double to_next_s = Instant{next.start_ns, next.start_part_ns}.seconds_since(here);
+        if (to_next_s > instant_s) {
+            add_rest(cursor.tap, move.to);
+            end_no_later_than(to_next_s);
+            return true;
+        }
+        ++cursor.move;
+        cursor.phase = 0;
+    }
+}
+
+void MotorFunction::add_rest(const Tap& tap, const ChannelValues& at) {
+    for (std::size_t channel = 0; channel < channel_count; ++channel)
+        if (tap.weights[channel] != 0)
+            smooth_of(channel).add_constant(tap.weights[channel] * at[channel]);
+}
+
+void MotorFunction::add_moving(Cursor& cursor, const ChannelMove& move, double since_s) {
+    const auto& phases = move.profile.phases;
+    while (cursor.phase + 1 < phases.size() &&
+           phases[cursor.phase + 1].time_s - since_s <= instant_s)
+        ++cursor.phase;
+    const Phase& phase = phases[cursor.phase];
+    const bool is_last = cursor.phase + 1 == phases.size();
+    const double left_s =
+        (is_last ? move.profile.duration_s : phases[cursor.phase + 1].time_s) - since_s;
+    end_no_later_than(left_s);
+    const double t = since_s - phase.time_s;
+    const double speed =
+        phase.speed_mm_s + t * (phase.acceleration_mm_s2 + t * phase.jerk_mm_s3 / 2);
+    const double half_acceleration = (phase.acceleration_mm_s2 + t * phase.jerk_mm_s3) / 2;
+    const double sixth_jerk = phase.jerk_mm_s3 / 6;
+    const double distance_mm =
+        phase.distance_mm +
+        t * (phase.speed_mm_s + t * (phase.acceleration_mm_s2 / 2 + t * phase.jerk_mm_s3 / 6));
+    const ChannelValues& weights = cursor.tap.weights;
+    for (std::size_t channel = 0; channel < channel_count; ++channel) {
+        if (weights[channel] == 0 || (move.turns && channel <= axis_y)) continue;
+        const double slope = weights[channel] * move.slope[channel];
+        smooth_of(channel).add_cubic(weights[channel] * move.from[channel] + slope * distance_mm,
+                                     slope * speed, slope * half_acceleration, slope * sixth_jerk);
+    }
+    if (!move.turns || (weights[axis_x] == 0 && weights[axis_y] == 0)) return;
+    add_turn(cursor.tap, move, distance_mm,
+             {move.rate * speed, move.rate * half_acceleration, move.rate * sixth_jerk});
+    // The speed of a phase is highest at one of its ends, or it has no jerk.
+    const double end_speed = speed + left_s * (2 * half_acceleration + left_s * 3 * sixth_jerk);
+    const double fastest = std::abs(move.rate) * std::max(speed, end_speed);
+    if (fastest > 0) end_no_later_than(Smooth::largest_turn_rad / fastest);
+}
+
+// The circle's point at the distance as a chord from its start, as in path.cpp; from there on, the turn.
+void MotorFunction::add_turn(const Tap& tap, const ChannelMove& move, double distance_mm,
+                             const TurnAngle& angle) {
+    const double turned_rad = move.rate * distance_mm;
+    const double half_rad = turned_rad / 2;
+    const double chord_mm = 2 * move.radius_mm * std::sin(half_rad);
+    const double chord_angle_rad = move.start_angle_rad + half_rad;
+    const double x_mm = move.start.x - chord_mm * std::sin(chord_angle_rad);
+    const double y_mm = move.start.y + chord_mm * std::cos(chord_angle_rad);
+    const double sine = move.radius_mm * std::sin(move.start_angle_rad + turned_rad);
+    const double cosine = move.radius_mm * std::cos(move.start_angle_rad + turned_rad);
+    const double wx = tap.weights[axis_x], wy = tap.weights[axis_y];
+    if (is_carriage_) {
+        smooth_[axis_x].add_constant(wx * x_mm);
+        smooth_[axis_y].add_constant(wy * y_mm);
+        if (wx != 0) smooth_[axis_x].add_turn({angle, -wx * sine, -wx * cosine});
+        if (wy != 0) smooth_[axis_y].add_turn({angle, wy * cosine, -wy * sine});
+        return;
+    }
+    smooth_[0].add_constant(wx * x_mm + wy * y_mm);
+    smooth_[0].add_turn({angle, wy * cosine - wx * sine, -wx * cosine - wy * sine});
+}
+
+// Above the head: g = sqrt(q), q = arm^2 - |p|^2, p the way from the tower.
+Sample MotorFunction::at(double time_s) const {
+    if (!is_carriage_) {
+        Sample sample = smooth_[0].at(time_s);
+        sample.position -= start_;
+        return sample;
+    }
+    const Sample x = smooth_[axis_x].at(time_s), y = smooth_[axis_y].at(time_s),
+                 z = smooth_[axis_z].at(time_s);
+    const double px = x.position - tower_.x_mm, py = y.position - tower_.y_mm;
+    const double off_mm = std::sqrt(px * px + py * py);
+    const double q = std::max(std::numeric_limits<double>::min(),
+                              (tower_.arm_mm - off_mm) * (tower_.arm_mm + off_mm));
+    const double g = std::sqrt(q);
+    const double half_q1 = -(px * x.speed + py * y.speed);
+    const double half_q2 =
+        -(x.speed * x.speed + y.speed * y.speed + px * x.acceleration + py * y.acceleration);
+    const double g1 = half_q1 / g;
+    return {steps_per_mm_ * (z.position + g - start_), steps_per_mm_ * (z.speed + g1),
+            steps_per_mm_ * (z.acceleration + (half_q2 - g1 * g1) / g)};
+}
+
+// Of the root: g g' = q'/2, g g'' = q''/2 - g'^2, g g''' = q'''/2 - 3 g' g''.
+void MotorFunction::limit_jerk() {
+    if (!is_carriage_) {
+        const Bounds own = smooth_[0].bounds(duration_s_);
+        least_jerk_ = own.least_jerk;
+        most_jerk_ = own.most_jerk;
+        return;
+    }
+    const Bounds x = smooth_[axis_x].bounds(duration_s_), y = smooth_[axis_y].bounds(duration_s_);
+    const double v = std::hypot(x.speed, y.speed), a = std::hypot(x.acceleration, y.acceleration);
+    const double j = std::hypot(x.jerk(), y.jerk());
+    const double off_mm = std::hypot(smooth_[axis_x].at(0).position - tower_.x_mm,
+                                     smooth_[axis_y].at(0).position - tower_.y_mm) +
+                          v * duration_s_;
+    const double height_mm =
+        std::sqrt(std::max(0.0, (tower_.arm_mm - off_mm) * (tower_.arm_mm + off_mm)));
+    const double g = std::max(height_mm, least_height_share * tower_.arm_mm);
+    const double g1 = off_mm * v / g;
+    const double g2 = (v * v + off_mm * a + g1 * g1) / g;
+    const double g3 = (3 * v * a + off_mm * j + 3 * g1 * g2) / g;
+    most_jerk_ = std::abs(steps_per_mm_) * (smooth_[axis_z].bounds(duration_s_).jerk() + g3);
+    least_jerk_ = -most_jerk_;
+}
+
+}  // namespace lyr::motion

@@ -1,0 +1,89 @@
+// Where a motor ideally is, in steps, as a function of time, on a piece of time in which no copy of the
+// motion changes its phase.
+//
+// Method. Each copy of the motion (a tap) has a cursor at its own place in the plan: a move and a phase of
+// its speed profile. From there to the nearest end of a phase all are cubics in time, in the distance or
+// in the angle of an arc. A motor that is a sum of axes adds them up; a tower's carriage keeps x, y and z
+// apart and takes the root.
+//
+// Contract
+//  1. Pieces follow each other without gaps and end where a phase of a copy ends, where an arc has turned
+//     by Smooth::largest_turn_rad, or where nothing is known of the plan yet.
+//  2. at() is exact to rounding within the piece; bounds() hold there.
+
+#pragma once
+
+#include <span>
+
+#include "target/motion/kinematics.h"
+#include "target/motion/move_window.h"
+#include "target/motion/smooth.h"
+
+namespace lyr::motion {
+
+// A time in the plan; the part is within 0..1.
+struct Instant {
+    std::int64_t ns = 0;
+    double part_ns = 0;
+
+    Instant after(double time_s) const;
+    double seconds_since(const Instant& before) const {
+        return (static_cast<double>(ns - before.ns) + (part_ns - before.part_ns)) * 1e-9;
+    }
+};
+
+// What becomes of a motor after an instant.
+enum class Known : std::uint8_t { piece, nothing_yet, rests_forever };
+
+class MotorFunction {
+public:
+    // A sum of channels times the weights of each tap, in steps; `start_steps` is subtracted.
+    static MotorFunction sum(const Taps& taps, double start_steps);
+    // The taps' weights are those of x, y and z, in mm.
+    static MotorFunction carriage(const Taps& taps, const Delta::Tower& tower, double steps_per_mm,
+                                  double start_mm);
+
+    // Moves on to the piece that begins at `begin`, which must be where the last one ended.
+    Known begin_piece(const MoveWindow& window, const Instant& begin);
+    double duration_s() const { return duration_s_; }
+    // Since the begin of the piece.
+    Sample at(double time_s) const;
+    double least_jerk() const { return least_jerk_; }
+    double most_jerk() const { return most_jerk_; }
+
+    // The first move that any cursor still needs.
+    std::uint64_t oldest_move() const;
+    // How much later in the plan than the motor the latest copy is.
+    std::int64_t ahead_ns() const;
+    // And how much earlier the earliest one is.
+    std::int64_t behind_ns() const;
+
+private:
+    struct Cursor {
+        Tap tap;
+        std::uint64_t move = 0;
+        std::size_t phase = 0;
+    };
+
+    MotorFunction(const Taps& taps, bool is_carriage);
+    // False: the plan does not reach so far yet.
+    bool add(Cursor& cursor, const MoveWindow& window, const Instant& begin);
+    void add_rest(const Tap& tap, const ChannelValues& at);
+    void add_moving(Cursor& cursor, const ChannelMove& move, double since_s);
+    void add_turn(const Tap& tap, const ChannelMove& move, double distance_mm,
+                  const TurnAngle& angle);
+    Smooth& smooth_of(std::size_t channel) { return smooth_[is_carriage_ ? channel : 0]; }
+    void limit_jerk();
+    void end_no_later_than(double time_s) {
+        if (time_s < duration_s_) duration_s_ = time_s;
+    }
+
+    std::vector<Cursor> cursors_;
+    bool is_carriage_ = false;
+    Delta::Tower tower_;
+    double steps_per_mm_ = 1, start_ = 0;
+    std::array<Smooth, 3> smooth_;
+    double duration_s_ = 0, least_jerk_ = 0, most_jerk_ = 0;
+};
+
+}  // namespace lyr::motion

@@ -1,0 +1,77 @@
+#include "target/motion/smooth.h"
+
+#include <algorithm>
+
+namespace lyr::motion {
+namespace {
+
+// Factors of the series of sin(a) / a and (1 - cos(a)) / a^2 by a^2. For |a| <= 0.8 the first ones left
+// out, 0.8^18 / 19! and 0.8^18 / 20!, are below the rounding of the sum.
+constexpr std::array<double, 9> sine_series{1.0 / 1.,
+                                            -1.0 / 6.,
+                                            1.0 / 120.,
+                                            -1.0 / 5040.,
+                                            1.0 / 362880.,
+                                            -1.0 / 39916800.,
+                                            1.0 / 6227020800.,
+                                            -1.0 / 1307674368000.,
+                                            1.0 / 355687428096000.};
+constexpr std::array<double, 9> versine_series{1.0 / 2.,
+                                               -1.0 / 24.,
+                                               1.0 / 720.,
+                                               -1.0 / 40320.,
+                                               1.0 / 3628800.,
+                                               -1.0 / 479001600.,
+                                               1.0 / 87178291200.,
+                                               -1.0 / 20922789888000.,
+                                               1.0 / 6402373705728000.};
+
+double sum(const std::array<double, 9>& series, double q) {
+    double value = series.back();
+    for (std::size_t i = series.size() - 1; i-- > 0;) value = series[i] + q * value;
+    return value;
+}
+
+}  // namespace
+
+void Smooth::add(const Turn& turn, double time, Sample& sample) {
+    const TurnAngle& a = turn.angle;
+    const double angle = time * (a.rate + time * (a.half_acceleration + time * a.sixth_jerk));
+    const double rate = a.rate + time * (2 * a.half_acceleration + time * 3 * a.sixth_jerk);
+    const double acceleration = 2 * a.half_acceleration + 6 * a.sixth_jerk * time;
+    const double q = angle * angle;
+    const double sine = angle * sum(sine_series, q);
+    const double versine = q * sum(versine_series, q);
+    const double cosine = 1 - versine;
+    const double along = turn.ahead * cosine + turn.inward * sine;
+    const double across = turn.inward * cosine - turn.ahead * sine;
+    sample.position += turn.ahead * sine + turn.inward * versine;
+    sample.speed += along * rate;
+    sample.acceleration += along * acceleration + across * rate * rate;
+}
+
+// Of an angle that does not turn back, the rate is largest at one of the ends, unless its acceleration
+// changes sign between them; the sum of sizes covers that.
+Bounds Smooth::bounds(double time) const {
+    Bounds bounds{std::abs(c_[1]) + time * (2 * std::abs(c_[2]) + time * 3 * std::abs(c_[3])),
+                  2 * std::abs(c_[2]) + 6 * std::abs(c_[3]) * time, 6 * c_[3], 6 * c_[3]};
+    for (std::size_t i = 0; i < turn_count_; ++i) {
+        const Turn& turn = turns_[i];
+        const double size = std::hypot(turn.ahead, turn.inward);
+        const double half = std::abs(turn.angle.half_acceleration);
+        const double sixth = std::abs(turn.angle.sixth_jerk);
+        const double end_rate = turn.angle.rate + time * (2 * turn.angle.half_acceleration +
+                                                          time * 3 * turn.angle.sixth_jerk);
+        const double rate =
+            std::max(std::abs(turn.angle.rate), std::abs(end_rate)) + time * time * 3 * sixth;
+        const double acceleration = 2 * half + 6 * sixth * time;
+        bounds.speed += size * rate;
+        bounds.acceleration += size * (rate * rate + acceleration);
+        const double jerk = size * (rate * rate * rate + 3 * rate * acceleration + 6 * sixth);
+        bounds.least_jerk -= jerk;
+        bounds.most_jerk += jerk;
+    }
+    return bounds;
+}
+
+}  // namespace lyr::motion

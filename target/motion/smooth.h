@@ -1,0 +1,74 @@
+// A function of time without breaks: a cubic and a few turns of arcs whose angles are cubics. What a
+// machine's axis, or a sum of shifted copies of it, is while none of the copies changes its phase.
+//
+// Contract
+//  1. Within |angle| <= largest_turn_rad position, speed and acceleration are exact to rounding. Nothing
+//     is lost on arcs that are nearly straight: a turn is kept as its way from where it begins.
+//  2. bounds() holds for all times from 0 to the one given, as long as no angle turns back.
+
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace lyr::motion {
+
+struct Sample {
+    double position = 0, speed = 0, acceleration = 0;
+};
+
+// The largest sizes of the derivatives, and between what the third one lies.
+struct Bounds {
+    double speed = 0, acceleration = 0;
+    double least_jerk = 0, most_jerk = 0;
+
+    double jerk() const { return std::fmax(std::abs(least_jerk), std::abs(most_jerk)); }
+};
+
+// Without a constant: the angle since the begin.
+struct TurnAngle {
+    double rate = 0, half_acceleration = 0, sixth_jerk = 0;
+};
+
+struct Turn {
+    TurnAngle angle;
+    double ahead = 0;   // times the angle's sine
+    double inward = 0;  // times 1 - its cosine
+};
+
+class Smooth {
+public:
+    static constexpr double largest_turn_rad = 0.8;
+    static constexpr std::size_t most_turns = 10;
+
+    void clear() {
+        c_ = {};
+        turn_count_ = 0;
+    }
+    void add_cubic(double constant, double rate, double half_acceleration, double sixth_jerk) {
+        c_[0] += constant;
+        c_[1] += rate;
+        c_[2] += half_acceleration;
+        c_[3] += sixth_jerk;
+    }
+    void add_constant(double constant) { c_[0] += constant; }
+    void add_turn(const Turn& turn) { turns_[turn_count_++] = turn; }
+
+    Sample at(double time) const {
+        Sample sample{c_[0] + time * (c_[1] + time * (c_[2] + time * c_[3])),
+                      c_[1] + time * (2 * c_[2] + time * 3 * c_[3]), 2 * c_[2] + 6 * c_[3] * time};
+        for (std::size_t i = 0; i < turn_count_; ++i) add(turns_[i], time, sample);
+        return sample;
+    }
+    Bounds bounds(double time) const;
+
+private:
+    static void add(const Turn& turn, double time, Sample& sample);
+
+    std::array<double, 4> c_{};
+    std::array<Turn, most_turns> turns_;
+    std::size_t turn_count_ = 0;
+};
+
+}  // namespace lyr::motion

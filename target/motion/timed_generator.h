@@ -1,0 +1,72 @@
+// Step times of motors whose motion is more than one path: carriages of a delta, axes with an input
+// shaper, an extruder with pressure advance, profiles with a jerk limit. Works in time, where
+// StepGenerator works in distance; both say the same of the same motion.
+//
+// Contract
+//  1. At every time each motor is within half a step (and TimeWalk::touch_steps) of its ideal position:
+//     the kinematics of the taps' sum of the plan, and the play made up for.
+//  2. A step comes within 1 us of the exact solution (in practice within 1 ns, the rounding of times).
+//  3. Positions are whole counts from the origin for the whole print, the extruder's too: nothing
+//     drifts.
+//  4. Steps come lead_ns() later than the plan says, since copies of the motion may come before it, and
+//     the last tail_ns() after its end at the most. Events are in order of time; a motor is never twice
+//     in one event.
+//  5. The same moves give the same events. Nothing is allocated as long as no more than
+//     MoveWindow::expected moves lie within the reach of the taps.
+
+#pragma once
+
+#include "target/motion/step_generator.h"
+#include "target/motion/time_walk.h"
+
+namespace lyr::motion {
+
+// The taps of x, y and z apart; a machine's motors may mix them.
+struct Shaping {
+    std::array<Taps, axis_e> axes;            // each with weights of one channel; empty: as planned
+    Taps extruder;                            // of filament and pressed filament; empty: as planned
+    std::array<double, axis_e> play_steps{};  // of the motors
+};
+
+class TimedGenerator {
+public:
+    // All motors are at count 0 when the plan is at the origin.
+    TimedGenerator(const Kinematics& kinematics, const Point& origin, const Shaping& shaping);
+
+    // The next move of the plan.
+    void start(const PlannedMove& planned);
+    // The plan rests until then after the moves so far: the steps that lag behind come out.
+    void rest_until(std::int64_t plan_ns);
+    // There are no more moves.
+    void finish();
+    // Writes the next events and returns how many; fewer than asked for: more of the plan is needed, or
+    // after finish() there are no more.
+    std::size_t next(std::span<StepEvent> events);
+
+    const StepCounts& counts() const { return counts_; }
+    std::int64_t lead_ns() const { return lead_ns_; }
+    std::int64_t tail_ns() const { return lead_ns_ + behind_ns_; }
+
+private:
+    struct Motor {
+        MotorFunction function;
+        TimeWalk walk;
+        Instant begin;  // of the piece
+        enum class State : std::uint8_t { fresh, walking, waiting, done } state = State::fresh;
+    };
+
+    void find(std::size_t motor);
+    void find_waiting();
+    bool begin_piece(std::size_t motor);
+    void take(std::size_t motor, StepEvent& event);
+
+    std::vector<Motor> motors_;
+    std::array<std::int64_t, motor_count> next_ns_;  // of a motor's next step, in the plan's time
+    std::array<bool, motor_count> waits_{};          // nothing is known of it from then on
+    MoveWindow window_;
+    std::int64_t lead_ns_ = 0, behind_ns_ = 0;
+    StepCounts counts_{};
+    std::int64_t last_ns_ = std::numeric_limits<std::int64_t>::min();
+};
+
+}  // namespace lyr::motion

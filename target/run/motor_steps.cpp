@@ -1,0 +1,45 @@
+#include "target/run/motor_steps.h"
+
+namespace lyr::run {
+namespace {
+
+using Generator = std::variant<motion::StepGenerator, motion::TimedGenerator>;
+
+Generator generator_for(const config::Printer& printer) {
+    const motion::Kinematics machine = moves::kinematics_of(printer);
+    const motion::Point origin{printer.start_mm[0], printer.start_mm[1], printer.start_mm[2]};
+    if (!moves::is_timed(printer)) {
+        if (const auto* belts = std::get_if<motion::CoreXy>(&machine))
+            return motion::StepGenerator(*belts, origin);
+        if (const auto* axes = std::get_if<motion::Cartesian>(&machine))
+            return motion::StepGenerator(*axes, origin);
+    }
+    return motion::TimedGenerator(machine, origin, moves::shaping_of(printer));
+}
+
+}  // namespace
+
+MotorSteps::MotorSteps(const config::Printer& printer) : generator_(generator_for(printer)) {}
+
+void MotorSteps::start(const motion::PlannedMove& planned) {
+    std::visit([&](auto& generator) { generator.start(planned); }, generator_);
+}
+
+void MotorSteps::rest_until(std::int64_t plan_ns) {
+    if (auto* timed = std::get_if<motion::TimedGenerator>(&generator_)) timed->rest_until(plan_ns);
+}
+
+void MotorSteps::finish() {
+    if (auto* timed = std::get_if<motion::TimedGenerator>(&generator_)) timed->finish();
+}
+
+std::size_t MotorSteps::next(std::span<motion::StepEvent> events) {
+    return std::visit([&](auto& generator) { return generator.next(events); }, generator_);
+}
+
+std::int64_t MotorSteps::tail_ns() const {
+    const auto* timed = std::get_if<motion::TimedGenerator>(&generator_);
+    return timed ? timed->tail_ns() : 0;
+}
+
+}  // namespace lyr::run

@@ -1,0 +1,43 @@
+// The sample printers, as a user would try them.
+
+#include "apps/program.h"
+#include "target/run/print_files.h"
+
+using namespace lyr;
+using namespace lyr::tests;
+
+namespace {
+
+Ended simulated(const std::string& print, const std::string& printer) {
+    return Folder("machines").run("lyrrun " + print + " --simulate --printer " + printer);
+}
+
+}  // namespace
+
+TEST_CASE("lyrrun: the sample CoreXY and delta print, every pulse within half a microstep") {
+    const std::string print = write_print(
+        "samples", {draw_square, draw_arcs, draw_circles, draw_climb}, {0, false, 60, 40});
+    for (const char* printer : {"corexy", "delta", "cartesian"}) {
+        CAPTURE(printer);
+        const Ended ended =
+            simulated(print, std::string(LYR_FIXTURES "/printers/") + printer + ".toml");
+        CHECK(ended.status == 0);
+        CHECK(ended.out.find("within half a microstep everywhere") != std::string::npos);
+    }
+}
+
+TEST_CASE("lyrrun: a part beyond a delta's arms is refused with layer and distance") {
+    const std::string print = write_print("corner", {draw_square}, {0, false, 85, 85});
+    const Ended ended = simulated(print, LYR_FIXTURES "/printers/delta.toml");
+    check_failure(ended, "lyrrun", 7, "from the middle of the bed");
+    CHECK(ended.err.find("layer 1") != std::string::npos);
+}
+
+TEST_CASE("lyrrun: a slip in a machine's keys comes with its line and the key that was meant") {
+    const Folder folder("slip");
+    folder.write("p.toml", "kinematics = \"delta\"\n[delta]\narm_mm = 250\nradus_mm = 120\n");
+    const Ended ended =
+        folder.run("lyrrun " + write_print("slip", {draw_square}) + " --simulate --printer p.toml");
+    check_failure(ended, "lyrrun", 3, "p.toml:4");
+    CHECK(ended.err.find("did you mean `radius_mm`?") != std::string::npos);
+}

@@ -1,0 +1,243 @@
+// Prints on crossed belts, on a delta and with shaped motion, from file to decoded pulses; contract of
+// target/run/machine_check.h and reach.h, by number.
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "target/run/machine_check.h"
+#include "target/run/print_files.h"
+#include "target/run/reach.h"
+#include "target/run/simulate.h"
+#include "target/run/step_stream.h"
+
+using namespace lyr;
+using namespace lyr::run;
+using namespace lyr::tests;
+
+namespace {
+
+config::Printer crossed() {
+    config::Printer printer = config::generic_printer();
+    printer.kinematics = config::Kinematics::corexy;
+    return printer;
+}
+
+config::Printer delta() {
+    config::Printer printer = config::generic_printer();
+    printer.kinematics = config::Kinematics::delta;
+    printer.delta = {{250, 251, 250}, {120, 120, 121}, {210, 331, 90}, 105};
+    for (std::size_t i = 0; i < 3; ++i) printer.axes[i].steps_per_mm = 100;
+    printer.axes[config::axis_z].max_speed_mm_s = 100;
+    return printer;
+}
+
+config::Printer shaped(config::Printer printer) {
+    for (std::size_t i = 0; i < 3; ++i) printer.shapers[i] = {config::ShaperKind::mzv, 40, 0.1};
+    if (printer.kinematics != config::Kinematics::delta)
+        printer.shapers[config::axis_y] = {config::ShaperKind::ei, 31, 0.05};
+    printer.pressure_advance_s = 0.05;
+    return printer;
+}
+
+config::Printer with_jerk(config::Printer printer) {
+    printer.max_jerk_mm_s3 = 1e5;
+    return printer;
+}
+
+SimulationReport simulated(const std::string& file, const config::Printer& printer) {
+    Result<SimulationReport> report = simulate({file, printer, {}, {}, {}});
+    REQUIRE_MESSAGE(report.ok(), (report.ok() ? "" : to_string(report.error())));
+    return *report;
+}
+
+std::string whole_print(const std::string& name, const Frame& frame) {
+    std::vector<Drawing> drawings;
+    for (const Case& what : all_cases()) drawings.push_back(what.drawing);
+    return write_print(name, drawings, frame);
+}
+
+// The motors' positions where the file ends.
+std::array<double, 3> carried_mm(const config::Printer& printer, double x, double y, double z) {
+    if (printer.kinematics == config::Kinematics::corexy) return {x + y, x - y, z};
+    std::array<double, 3> carried{x, y, z};
+    if (printer.kinematics == config::Kinematics::delta)
+        for (std::size_t i = 0; i < 3; ++i) {
+            const double angle = printer.delta.tower_angle_deg[i] * std::numbers::pi / 180;
+            const double off = std::hypot(x - printer.delta.radius_mm[i] * std::cos(angle),
+                                          y - printer.delta.radius_mm[i] * std::sin(angle));
+            carried[i] = z + std::sqrt(std::pow(printer.delta.arm_mm[i], 2) - off * off);
+        }
+    return carried;
+}
+
+void check_end(const SimulationReport& report, const std::string& file) {
+    const config::Printer& printer = report.printer;
+    Result<format::Reader> reader = format::Reader::open(file);
+    REQUIRE(reader.ok());
+    FilePath path(std::move(*reader), printer.start_mm, report.inspection.filament_diameter_mm);
+    PathCurve curve;
+    while (*path.next(curve)) continue;
+    const auto start = carried_mm(printer, 0, 0, 0);
+    const auto end = carried_mm(printer, curve.to_mm[0], curve.to_mm[1], curve.to_mm[2]);
+    for (std::size_t i = 0; i < 3; ++i)
+        CHECK(std::abs(static_cast<double>(report.positions[i]) -
+                       (end[i] - start[i]) * printer.axes[i].steps_per_mm) < 0.5001);
+    CHECK(std::abs(static_cast<double>(report.positions[3]) -
+                   curve.to_mm[3] * printer.axes[3].steps_per_mm) < 0.5001);
+}
+
+}  // namespace
+
+TEST_CASE("machine: every kind of motion on crossed belts and on a delta, turned and mirrored") {
+    for (const config::Printer& printer : {crossed(), delta(), with_jerk(delta())})
+        for (const bool mirrored : {false, true})
+            for (const double angle_rad : {0.0, 2.5}) {
+                const std::string file = whole_print("kinds", {angle_rad, mirrored, 20, 30});
+                const SimulationReport report = simulated(file, printer);
+                CAPTURE(text_of(report));
+                CHECK(report.within_limits());
+                CHECK(report.worst_steps() < 0.5 + 1e-3);
+                CHECK(report.worst_steps() > 0.4);
+                CHECK(report.path.distance_mm < 0.02);
+                check_end(report, file);
+            }
+}
+
+TEST_CASE("machine: shaped motions follow the shaped plan, and end where the file does") {
+    const std::string file = whole_print("shaped", {0.3, false, 20, 30});
+    for (const config::Printer& plain : {config::generic_printer(), crossed(), delta()})
+        for (const config::Printer& printer :
+             {shaped(plain), with_jerk(plain), with_jerk(shaped(plain))}) {
+            const SimulationReport report = simulated(file, printer);
+            CAPTURE(text_of(report));
+            CHECK(report.within_limits());
+            CHECK(report.worst_steps() > 0.4);
+            check_end(report, file);
+        }
+}
+
+TEST_CASE("machine: axes with backlash follow the file, a fifth of it late after turns") {
+    const std::string file = whole_print("backlash", {0.3, false, 20, 30});
+    for (const config::Printer& plain : {config::generic_printer(), shaped(crossed())}) {
+        config::Printer printer = plain;
+        printer.backlash_mm = {0.1, 0.15, 0.02};
+        const SimulationReport report = simulated(file, printer);
+        CAPTURE(text_of(report));
+        CHECK(report.within_limits());
+        CHECK(report.planned_steps[config::axis_x] > 1);
+        CHECK(report.planned_steps[config::axis_x] < 0.501 + 0.1 * 80 / 5);
+        CHECK(report.planned_steps[config::axis_e] < 0.501);
+    }
+}
+
+TEST_CASE("machine check 1, 3: a step left out, doubled, late or of another motor is found") {
+    const std::string file = whole_print("mutated", {0.3, false, 20, 30});
+    std::mt19937 random(5);
+    for (const config::Printer& printer : {crossed(), shaped(delta())})
+        for (int mutation = 0; mutation < 5; ++mutation) {
+            CAPTURE(mutation);
+            Result<StepStream> stream = StepStream::open(file, printer, 1.75);
+            REQUIRE(stream.ok());
+            Result<format::Reader> reader = format::Reader::open(file);
+            REQUIRE(reader.ok());
+            FilePath path(std::move(*reader), printer.start_mm, 1.75);
+            MachineCheck check(printer, [&](PathCurve& curve) { return path.next(curve); });
+            StepPositions at{};
+            const std::size_t bad = 1000 + random() % 5000;
+            std::size_t count = 0;
+            const auto feed = [&](const Step& step) {
+                check.step({step.time_ns, step.axis, at, step.positive});
+                at[step.axis] += step.positive ? 1 : -1;
+            };
+            for (bool more = true; more;) {
+                std::vector<Step> steps;
+                more = *stream->next(steps);
+                check.expect(stream->moves(), {});
+                for (Step step : steps) {
+                    const bool hit = ++count == bad;
+                    if (hit && mutation == 1) continue;
+                    if (hit && mutation == 2) feed(step);
+                    if (hit && mutation == 3)
+                        step.axis = static_cast<std::uint8_t>((step.axis + 1) % 4);
+                    if (hit && mutation == 4) step.positive = !step.positive;
+                    feed(step);
+                }
+            }
+            REQUIRE(check.finish(at).ok());
+            const AxisValues& off = check.off_plan();
+            const double worst = *std::max_element(off.begin(), off.end());
+            CHECK(count > 6000);
+            if (mutation == 0)
+                CHECK(worst < 0.501);
+            else
+                CHECK(worst > 0.9);
+        }
+}
+
+TEST_CASE("machine check 3: curves that the plan leaves out or adds are found") {
+    const std::string file = whole_print("fewer", {0, false, 20, 30});
+    for (const bool leave_out : {true, false}) {
+        const config::Printer printer = crossed();
+        Result<StepStream> stream = StepStream::open(file, printer, 1.75);
+        Result<format::Reader> reader = format::Reader::open(file);
+        FilePath path(std::move(*reader), printer.start_mm, 1.75);
+        int curves = 0;
+        MachineCheck check(printer, [&](PathCurve& curve) -> Result<bool> {
+            if (++curves == 40) {
+                if (!leave_out) return false;
+                (void)path.next(curve);
+            }
+            return path.next(curve);
+        });
+        std::vector<Step> steps;
+        for (bool more = true; more;) {
+            more = *stream->next(steps);
+            check.expect(stream->moves(), {});
+        }
+        CHECK(check.finish({}).ok());
+        CHECK(check.off_file().worst_steps > 0.9);
+    }
+}
+
+TEST_CASE(
+    "reach 1: a curve is farthest from the middle at an end or where its radius points away") {
+    std::mt19937 random(9);
+    std::uniform_real_distribution<double> even(-1, 1);
+    for (int i = 0; i < 200; ++i) {
+        PathCurve curve;
+        curve.is_arc = i % 4 != 0;
+        curve.center_x_mm = 50 * even(random);
+        curve.center_y_mm = 50 * even(random);
+        curve.radius_mm = 30 + 29 * even(random);
+        curve.start_angle_rad = 7 * even(random);
+        curve.sweep_rad = 6.28 * even(random);
+        const auto end = [&](double angle) {
+            return AxisValues{curve.center_x_mm + curve.radius_mm * std::cos(angle),
+                              curve.center_y_mm + curve.radius_mm * std::sin(angle), 0, 0};
+        };
+        curve.from_mm = end(curve.start_angle_rad);
+        curve.to_mm = end(curve.start_angle_rad + curve.sweep_rad);
+        double looked = 0;
+        for (int k = 0; k <= 2000; ++k) {
+            const AxisValues at = curve.at(k / 2000.0);
+            looked = std::max(looked, std::hypot(at[0], at[1]));
+        }
+        CHECK(farthest_mm(curve) >= looked - 1e-9);
+        CHECK(farthest_mm(curve) <= looked + 1e-3);
+    }
+}
+
+TEST_CASE("reach 2: a file beyond a delta's arms is refused before anything moves") {
+    const std::string file = whole_print("beyond", {0, false, 80, 60});
+    config::Printer printer = delta();
+    const Result<SimulationReport> report = simulate({file, printer, {}, {}, {}});
+    REQUIRE_FALSE(report.ok());
+    CHECK(report.error().status == ExitStatus::machine);
+    CHECK(report.error().where.layer == 1);
+    CHECK(report.error().message.find("delta.reach_mm") != std::string::npos);
+    printer = crossed();
+    CHECK(simulate({file, printer, {}, {}, {}}).ok());
+}
