@@ -247,7 +247,7 @@ private:
 
     void append_piece(const PrintMove& move) {
         const Piece& piece = layer_.fill.pieces[move.index];
-        const bool bridges = piece.role == Role::bridge;
+        const bool bridges = is_bridge(piece.role);
         travel(way_to(move), move.seam.point);
         if (bridges) encoder_.fan(0, profile_.bridge.fan);
         begin(piece_style(piece));

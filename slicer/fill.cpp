@@ -6,6 +6,7 @@
 #include "kernel/toolpath/bridges.h"
 #include "kernel/toolpath/centre_lines.h"
 #include "kernel/toolpath/infill.h"
+#include "kernel/toolpath/internal_bridges.h"
 
 namespace lyr::slicer {
 namespace {
@@ -49,6 +50,23 @@ constexpr double least_flow = 0.8, most_flow = 1.1;
 
 double radians(double degrees) {
     return degrees * std::numbers::pi / 180;
+}
+
+bool is_solid(const profile::Profile& profile) {
+    return profile.infill.density == 1;
+}
+
+SkinRequest skin_request(const Options& options) {
+    const profile::Skin& skin = options.profile.skin;
+    // Of a solid part only what is bare has a role of its own.
+    const auto layers = [&](std::uint32_t count) {
+        return is_solid(options.profile) ? std::min(count, 1u) : count;
+    };
+    return {.top_layers = layers(skin.top_layers),
+            .bottom_layers = layers(skin.bottom_layers),
+            .width_mm = skin.width_mm,
+            .min_sparse_mm2 = skin.min_area_mm2,
+            .allowed_mm = options.tolerance().unite_mm()};
 }
 
 class Filler {
@@ -98,29 +116,56 @@ public:
     }
 
     void sparse(Region region) {
-        if (profile_.infill.density == 0) return;
-        append(region, format::Role::sparse_infill,
-               {.pattern = kernel_pattern(profile_.infill.pattern),
-                .density = profile_.infill.density,
-                .width_mm = profile_.infill.width_mm,
-                .angle_rad = radians(profile_.infill.angle_deg)});
+        fill.asks_sparse = profile_.infill.density > 0 && !region.empty();
+        append(sparse_lines(region), format::Role::sparse_infill);
+    }
+
+    Fill sparse_lines(Region region) const {
+        if (profile_.infill.density == 0) return {};
+        return lines(region, {.pattern = kernel_pattern(profile_.infill.pattern),
+                              .density = profile_.infill.density,
+                              .width_mm = profile_.infill.width_mm,
+                              .angle_rad = radians(profile_.infill.angle_deg)});
+    }
+
+    // `holding`: the lines of the sparse fill below.
+    void internal_bridges(Region region, Region below, Region sparse_below, const Fill& holding) {
+        const std::vector<Chord> chords = chords_of(holding);
+        for (const Bridge& bridge :
+             bridges_inside(region, below, sparse_below, chords, profile_.skin.width_mm)) {
+            if (bridge.angle_rad) {
+                append(bridge.contours, format::Role::internal_bridge, InfillPattern::aligned,
+                       *bridge.angle_rad);
+            } else {
+                solid(bridge.contours, format::Role::solid_infill);
+                fill.is_unheld |= chords.empty();
+            }
+        }
     }
 
     LayerFill fill{};
 
 private:
     void append(Region region, format::Role role, InfillPattern pattern, double angle_rad) {
-        append(region, role,
-               {.pattern = pattern,
-                .density = 1,
-                .width_mm = profile_.skin.width_mm,
-                .angle_rad = angle_rad});
+        const std::size_t first = fill.pieces.size();
+        append(lines(region, {.pattern = pattern,
+                              .density = 1,
+                              .width_mm = profile_.skin.width_mm,
+                              .angle_rad = angle_rad}),
+               role);
+        balance(first, region, profile_.skin.width_mm);
+    }
+
+    void append(Fill lines, format::Role role) {
+        fill.unresolved += lines.unresolved;
+        for (HatchRun& run : lines.runs) fill.pieces.push_back({role, std::move(run)});
+        for (Strand& strand : lines.strands) fill.pieces.push_back({role, std::move(strand)});
     }
 
     // The region begins half a spacing from the walls' middles; lines end so that their flanks overlap with those of the
     // walls by what the profile says.
-    void append(Region region, format::Role role, InfillRequest request) {
-        if (region.empty()) return;
+    Fill lines(Region region, InfillRequest request) const {
+        if (region.empty()) return {};
         request.height_mm = span_.height_mm();
         request.z_mm = span_.middle_mm();
         request.layer = index_;
@@ -128,13 +173,9 @@ private:
         const double inset_mm = flank_mm() + (0.5 - profile_.infill.overlap) * request.width_mm;
         const OffsetResult middles =
             offset(region, {.distance_mm = -inset_mm, .allowed_mm = allowed_mm_});
-        fill.unresolved += middles.unresolved.has_value();
         Fill lines = infill(middles.contours, request);
-        fill.unresolved += lines.unresolved;
-        const std::size_t first = fill.pieces.size();
-        for (HatchRun& run : lines.runs) fill.pieces.push_back({role, std::move(run)});
-        for (Strand& strand : lines.strands) fill.pieces.push_back({role, std::move(strand)});
-        if (request.density == 1) balance(first, region, request.width_mm);
+        lines.unresolved += middles.unresolved.has_value();
+        return lines;
     }
 
     // What lines reach over into walls and links add makes up for what is left beside them, by the flow.
@@ -161,19 +202,19 @@ double length_mm(const Piece& piece) {
     return run ? lyr::length_mm(*run) : lyr::length_mm(std::get<Strand>(piece.way).path);
 }
 
-LayerFill fill_layer(std::size_t index, const LayerSpan& span, const Walls& walls,
-                     std::span<const SkinOutline> outlines, const Options& options) {
+LayerSkins skins_of_layer(std::size_t index, const Walls& walls,
+                          std::span<const SkinOutline> outlines, const Options& options) {
+    return skins_of(outlines, index, walls.inside, skin_request(options));
+}
+
+LayerFill fill_layer(std::size_t index, const Walls& walls, const PartLayers& layers,
+                     const Options& options) {
     const profile::Profile& profile = options.profile;
-    Filler filler(index, span, options);
-    const bool is_solid = profile.infill.density == 1;
-    // Of a solid part only what is bare has a role of its own.
-    const auto layers = [&](std::uint32_t count) { return is_solid ? std::min(count, 1u) : count; };
-    LayerSkins skins = skins_of(outlines, index, walls.inside,
-                                {.top_layers = layers(profile.skin.top_layers),
-                                 .bottom_layers = layers(profile.skin.bottom_layers),
-                                 .width_mm = profile.skin.width_mm,
-                                 .min_sparse_mm2 = profile.skin.min_area_mm2,
-                                 .allowed_mm = options.tolerance().unite_mm()});
+    Filler filler(index, layers.spans[index], options);
+    LayerSkins skins = layers.skins[index];
+    const bool may_bridge = index > 0 && !is_solid(profile);
+    if (may_bridge)
+        add_internal_bridges(skins, layers.skins[index - 1].sparse, skin_request(options));
     filler.fill.unresolved += skins.unresolved;
     const profile::Perimeters& perimeters = profile.perimeters;
     filler.narrow(walls.thin, walls.thin_joints, format::Role::thin_wall, perimeters.min_width_mm,
@@ -182,8 +223,14 @@ LayerFill fill_layer(std::size_t index, const LayerSpan& span, const Walls& wall
                   filler.flank_mm());
     filler.solid(skins.bottom, format::Role::bottom_skin);
     filler.solid(skins.top, format::Role::top_skin);
-    if (index > 0) filler.bridges(skins.bridge, outlines[index - 1].region());
-    if (is_solid) {
+    if (index > 0) filler.bridges(skins.bridge, layers.outlines[index - 1].region());
+    if (!skins.internal_bridge.empty()) {
+        const Region sparse_below = layers.skins[index - 1].sparse;
+        const Filler below(index - 1, layers.spans[index - 1], options);
+        filler.internal_bridges(skins.internal_bridge, layers.outlines[index - 1].region(),
+                                sparse_below, below.sparse_lines(sparse_below));
+    }
+    if (is_solid(profile)) {
         const RegionResult rest =
             combined(skins.solid, skins.sparse, Operation::unite, options.tolerance().unite_mm());
         filler.fill.unresolved += rest.unresolved;

@@ -26,11 +26,25 @@ struct LayerFill {
     std::vector<Piece> pieces{};
     std::size_t support =
         0;  // so many of the pieces, the first ones: before the part, from support or raft
+    bool asks_sparse = false;  // there is room for sparse fill, and the profile asks for it
+    bool is_unheld = false;    // solid fill lies on nothing: a bridge inside that no side holds
     std::size_t unresolved = 0;
 };
 
-// `outlines` are those of all layers.
-LayerFill fill_layer(std::size_t index, const LayerSpan& span, const Walls& walls,
-                     std::span<const SkinOutline> outlines, const Options& options);
+// The part's layers from the bed upwards, without a raft: a layer's fill depends on those around it.
+struct PartLayers {
+    std::span<const LayerSpan> spans;
+    std::span<const SkinOutline> outlines;
+    std::span<const LayerSkins> skins;  // of skins_of_layer(), without bridges inside
+
+    PartLayers from(std::size_t first) const {
+        return {spans.subspan(first), outlines.subspan(first), skins.subspan(first)};
+    }
+};
+
+LayerSkins skins_of_layer(std::size_t index, const Walls& walls,
+                          std::span<const SkinOutline> outlines, const Options& options);
+LayerFill fill_layer(std::size_t index, const Walls& walls, const PartLayers& layers,
+                     const Options& options);
 
 }  // namespace lyr::slicer

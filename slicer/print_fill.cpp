@@ -7,9 +7,8 @@
 
 namespace lyr::slicer {
 
-LayerFill print_fill(std::size_t index, const LayerSpan& span, const Walls& walls,
-                     std::span<const SkinOutline> outlines, const SupportPlan& support,
-                     const Options& options) {
+LayerFill print_fill(std::size_t index, const Walls& walls, const PartLayers& layers,
+                     const SupportPlan& support, const Options& options) {
     const std::size_t raft = raft_layers(options.profile);
     LayerFill fill;
     if (index < raft) {
@@ -18,14 +17,14 @@ LayerFill print_fill(std::size_t index, const LayerSpan& span, const Walls& wall
         fill.support = fill.pieces.size();
         return fill;
     }
-    fill = fill_layer(index - raft, span, walls, outlines.subspan(raft), options);
+    fill = fill_layer(index - raft, walls, layers.from(raft), options);
     std::vector<Piece> pieces = support.pieces(index, options, fill.unresolved);
     fill.support = pieces.size();
     fill.pieces.insert(fill.pieces.begin(), std::make_move_iterator(pieces.begin()),
                        std::make_move_iterator(pieces.end()));
     if (index == 0)
         fill.around = adhesion_of(support.with_part(index, options, fill.unresolved),
-                                  span.height_mm(), options, fill.unresolved);
+                                  layers.spans[index].height_mm(), options, fill.unresolved);
     return fill;
 }
 

@@ -9,9 +9,8 @@
 
 namespace lyr::slicer {
 
-// `index` counts the raft's layers too, which have empty outlines. Those of all layers are in `outlines`.
-LayerFill print_fill(std::size_t index, const LayerSpan& span, const Walls& walls,
-                     std::span<const SkinOutline> outlines, const SupportPlan& support,
-                     const Options& options);
+// `index` and `layers` count the raft's layers too, which have empty outlines and no skins.
+LayerFill print_fill(std::size_t index, const Walls& walls, const PartLayers& layers,
+                     const SupportPlan& support, const Options& options);
 
 }  // namespace lyr::slicer

@@ -16,6 +16,10 @@ bool is_wall(Role role) {
 
 }  // namespace
 
+bool is_bridge(Role role) {
+    return role == Role::bridge || role == Role::internal_bridge;
+}
+
 double Styles::speed_mm_s(Role role, double length_mm) const {
     const profile::Speed& speed = profile_.speed;
     switch (role) {
@@ -33,6 +37,7 @@ double Styles::speed_mm_s(Role role, double length_mm) const {
         case Role::top_skin:
             return speed.top_skin_mm_s;
         case Role::bridge:
+        case Role::internal_bridge:
             return speed.bridge_mm_s;
         case Role::support:
         case Role::support_interface:
@@ -60,6 +65,7 @@ double Styles::acceleration_mm_s2(Role role) const {
         case Role::top_skin:
             return acceleration.top_skin_mm_s2;
         case Role::bridge:
+        case Role::internal_bridge:
             return acceleration.bridge_mm_s2;
         case Role::support:
         case Role::support_interface:
@@ -74,7 +80,7 @@ format::PathStyle Styles::of(Role role, double width_mm, double length_mm, doubl
         .role = role,
         .width_mm = width_mm,
         .height_mm = height_mm_,
-        .flow = flow * profile_.filament.flow * (role == Role::bridge ? profile_.bridge.flow : 1),
+        .flow = flow * profile_.filament.flow * (is_bridge(role) ? profile_.bridge.flow : 1),
         .acceleration_mm_s2 = acceleration_mm_s2(role)};
     double speed = speed_mm_s(role, is_wall(role) ? length_mm : 0);
     if (layer_ == 0) speed = std::min(speed, profile_.speed.first_layer_mm_s);

@@ -7,6 +7,9 @@
 
 namespace lyr::slicer {
 
+// Over air or inside the part.
+bool is_bridge(format::Role role);
+
 class Styles {
 public:
     Styles(const profile::Profile& profile, std::size_t layer, double height_mm)

@@ -10,8 +10,10 @@
 #include "base/text.h"
 #include "slicer/adhesion.h"
 #include "slicer/encode.h"
+#include "slicer/fill_report.h"
 #include "slicer/layers.h"
 #include "slicer/print_fill.h"
+#include "slicer/raft.h"
 
 namespace lyr::slicer {
 namespace {
@@ -32,6 +34,25 @@ std::vector<SkinOutline> skin_outlines(std::span<const OutlinedLayer> layers) {
     return outlines;
 }
 
+// Of all layers of the part; the raft's have none.
+std::vector<LayerSkins> skins_of_layers(const LayersToWrite& in,
+                                        std::span<const SkinOutline> outlines) {
+    const std::size_t raft = raft_layers(in.options.profile);
+    std::vector<LayerSkins> skins;
+    in_order(
+        in.layers.size(), thread_count(in.options),
+        [&](std::size_t i) {
+            return i < raft ? LayerSkins()
+                            : skins_of_layer(i - raft, in.layers[i].walls, outlines.subspan(raft),
+                                             in.options);
+        },
+        [&](std::size_t, LayerSkins made) {
+            skins.push_back(std::move(made));
+            return true;
+        });
+    return skins;
+}
+
 // All of a layer of one copy, in the order in which it is printed.
 struct PlannedLayer {
     LayerFill fill{};
@@ -40,7 +61,7 @@ struct PlannedLayer {
 };
 
 struct TimedLayer {
-    std::size_t unresolved = 0;
+    FillNotes notes{};
     std::optional<format::EncodedLayer> encoded{};
     LayerEstimate estimate{};
     std::optional<Diagnostic> error{};
@@ -53,13 +74,14 @@ struct Job {
     std::vector<std::vector<Seam>> seams{
         seams_of(in.layers, seam_choice(in.options.profile.perimeters.seam))};
     std::vector<SkinOutline> outlines{skin_outlines(in.layers)};
+    std::vector<LayerSkins> skins{skins_of_layers(in, outlines)};
 };
 
 PlannedLayer planned(std::size_t i, const Job& job) {
     const OutlinedLayer& outlined = job.in.layers[i];
     const Options& options = job.in.options;
-    PlannedLayer made{.fill = print_fill(i, job.in.spans[i], outlined.walls, job.outlines,
-                                         job.in.support, options)};
+    const PartLayers layers{job.in.spans, job.outlines, job.skins};
+    PlannedLayer made{.fill = print_fill(i, outlined.walls, layers, job.in.support, options)};
     if (options.profile.adhesion.kind == profile::AdhesionKind::skirt) {
         made.skirt = std::exchange(made.fill.around, {});
         if (i == 0 && job.in.plate.shifts.size() > 1)
@@ -133,19 +155,11 @@ private:
     Estimate estimate_{};
 };
 
-void warn_of_fill(std::size_t unresolved, std::size_t i, const Job& job, Diagnostics& diagnostics) {
-    if (unresolved > 0)
-        diagnostics.push_back(
-            {Severity::warning,
-             ExitStatus::geometry,
-             counted(unresolved, "part") + " of the layer's fill could not be made",
-             {.layer = static_cast<int>(i + 1), .z_mm = job.in.spans[i].middle_mm()}});
-}
-
 // Takes layers as they are made, in order.
 struct Sink {
     TimedWriter timed;
     const Progress& progress;
+    FillReport report{};
     std::optional<Diagnostic> failed{};
 
     bool take(std::size_t i, TimedLayer made, std::size_t count) {
@@ -162,6 +176,10 @@ struct Sink {
     }
 };
 
+Location place_of(std::size_t i, const Job& job) {
+    return {.layer = static_cast<int>(i + 1), .z_mm = job.in.spans[i].middle_mm()};
+}
+
 // Each layer of all copies.
 void write_by_layer(const Job& job, Sink& sink, Diagnostics& diagnostics) {
     const auto to = copies_of(job.in.plate, job.in.plate.order);
@@ -171,11 +189,11 @@ void write_by_layer(const Job& job, Sink& sink, Diagnostics& diagnostics) {
         [&](std::size_t i) {
             const PlannedLayer layer = planned(i, job);
             TimedLayer made = encoded(i, job, layer, i % 2 == 0 ? to : fro, i == 0, false);
-            made.unresolved = layer.fill.unresolved;
+            made.notes = notes_of(layer.fill);
             return made;
         },
         [&](std::size_t i, TimedLayer made) {
-            warn_of_fill(made.unresolved, i, job, diagnostics);
+            sink.report.add(made.notes, place_of(i, job), diagnostics);
             return sink.take(i, std::move(made), job.in.layers.size());
         });
 }
@@ -187,7 +205,7 @@ void write_in_sequence(const Job& job, Sink& sink, Diagnostics& diagnostics) {
         job.in.layers.size(), thread_count(job.in.options),
         [&](std::size_t i) { return planned(i, job); },
         [&](std::size_t i, PlannedLayer made) {
-            warn_of_fill(made.fill.unresolved, i, job, diagnostics);
+            sink.report.add(notes_of(made.fill), place_of(i, job), diagnostics);
             layers.push_back(std::move(made));
             return true;
         });
@@ -218,6 +236,7 @@ Result<Estimate> write_layers(const LayersToWrite& layers, format::Writer& write
         write_by_layer(job, sink, diagnostics);
     }
     if (sink.failed) return *sink.failed;
+    sink.report.finish(layers.options.profile.infill, diagnostics);
     return sink.timed.estimate();
 }
 

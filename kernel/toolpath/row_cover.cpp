@@ -36,6 +36,24 @@ void append_union(std::span<const HatchSpan> a, std::span<const HatchSpan> b,
     }
 }
 
+void append_common(std::span<const HatchSpan> a, std::span<const HatchSpan> b,
+                   std::vector<HatchSpan>& out) {
+    while (!a.empty() && !b.empty()) {
+        const HatchSpan both{std::max(a[0].start_mm, b[0].start_mm),
+                             std::min(a[0].end_mm, b[0].end_mm)};
+        if (both.start_mm < both.end_mm) out.push_back(both);
+        auto& ends_first = a[0].end_mm < b[0].end_mm ? a : b;
+        ends_first = ends_first.subspan(1);
+    }
+}
+
+double longest_of(std::span<const HatchSpan> intervals) {
+    double longest = 0;
+    for (const HatchSpan& span : intervals)
+        longest = std::max(longest, span.end_mm - span.start_mm);
+    return longest;
+}
+
 }  // namespace
 
 RowCover::RowCover(std::span<const Contour> region, double pitch_mm) {
@@ -52,9 +70,17 @@ double RowCover::length_mm() const {
 }
 
 double RowCover::longest_mm() const {
+    return longest_of(intervals_);
+}
+
+double RowCover::longest_pair_mm() const {
     double longest = 0;
-    for (const HatchSpan& span : intervals_)
-        longest = std::max(longest, span.end_mm - span.start_mm);
+    std::vector<HatchSpan> both;
+    for (std::int64_t k = first_row_; k < last_row(); ++k) {
+        both.clear();
+        append_common(row(k), row(k + 1), both);
+        longest = std::max(longest, longest_of(both));
+    }
     return longest;
 }
 
@@ -85,6 +111,19 @@ RowCover RowCover::with(const RowCover& other) const {
     for (std::int64_t k = result.first_row_; k < last; ++k) {
         result.begin_row();
         append_union(row(k), other.row(k), result.intervals_);
+    }
+    result.begin_row();
+    return result;
+}
+
+RowCover RowCover::common(const RowCover& other) const {
+    RowCover result;
+    if (empty() || other.empty()) return result;
+    result.first_row_ = std::max(first_row_, other.first_row_);
+    const std::int64_t last = std::min(last_row(), other.last_row());
+    for (std::int64_t k = result.first_row_; k < last; ++k) {
+        result.begin_row();
+        append_common(row(k), other.row(k), result.intervals_);
     }
     result.begin_row();
     return result;

@@ -5,6 +5,8 @@
 //  2. Operations are those on sets of points of the rows; a row's intervals are apart and in rising order.
 //  3. A disc of a diameter d >= pitch_mm that lies in a region has on a row of it an interval of at least
 //     sqrt(d^2 - pitch_mm^2). So what has only shorter ones holds no such disc.
+//  4. Neighbouring rows have an interval of at least sqrt(d^2 - 4 pitch_mm^2) in common where a disc of a diameter
+//     d >= 2 pitch_mm lies in the region; of a strip narrower than pitch_mm and nearly along the rows they have none.
 //
 // Cost: linear in the intervals.
 
@@ -24,12 +26,14 @@ public:
     RowCover(std::span<const Contour> region, double pitch_mm);
 
     bool empty() const { return intervals_.empty(); }
-    double length_mm() const;   // of all intervals
-    double longest_mm() const;  // interval
+    double length_mm() const;        // of all intervals
+    double longest_mm() const;       // interval
+    double longest_pair_mm() const;  // that a row and the next have in common
 
-    // What of this is not in the other; in any of the two.
+    // What of this is not in the other; in any of the two; in both.
     RowCover without(const RowCover& other) const;
     RowCover with(const RowCover& other) const;
+    RowCover common(const RowCover& other) const;
 
 private:
     std::int64_t last_row() const {

@@ -60,6 +60,7 @@ private:
 
 struct LayerSkins {
     std::vector<Contour> top{}, bottom{}, bridge{}, solid{}, sparse{};
+    std::vector<Contour> internal_bridge{};  // none from skins_of(): see internal_bridges.h
     std::size_t slivers = 0;  // left out
     std::size_t unresolved = 0;
 };
