@@ -37,8 +37,8 @@ void FillReport::finish(const profile::Infill& infill, Diagnostics& diagnostics)
         diagnostics.push_back(
             warning("no line of the sparse fill fits into the part" + density, {}));
     if (unheld_ > 0)
-        diagnostics.push_back(warning("solid fill that nothing below holds, in " +
-                                          counted(unheld_, "layer") + ", this the first" + density,
+        diagnostics.push_back(warning("solid fill lies on nothing that holds it in " +
+                                          counted(unheld_, "layer") + ", first here" + density,
                                       first_unheld_));
 }
 

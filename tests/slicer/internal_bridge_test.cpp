@@ -182,3 +182,24 @@ TEST_CASE("sparse fill so thin that no line of it fits is said once") {
     CHECK(cube.layers_with(Role::sparse_infill).empty());
     CHECK(cube.layers_with(Role::internal_bridge) == std::vector<std::size_t>{95});
 }
+
+TEST_CASE(
+    "solid fill that lies on nothing within reach of a wall is said once, with its first layer") {
+    // The floor of the box is far from the walls of the plate below.
+    Options options = filled(0);
+    options.profile.layer.height_mm = options.profile.layer.first_height_mm = 0.4;
+    Diagnostics diagnostics;
+    const auto gearbox =
+        load(std::string(LYR_FIXTURES) + "/parts/gearbox_base.step", options, diagnostics);
+    REQUIRE(gearbox);
+    const Printed empty = printed(*gearbox, options);
+    REQUIRE(empty.diagnostics.size() == 1);
+    const Diagnostic& warning = empty.diagnostics[0];
+    CHECK(warning.severity == Severity::warning);
+    CHECK(warning.message.starts_with("solid fill lies on nothing that holds it in "));
+    REQUIRE(warning.where.layer.has_value());
+    const LayerFigures& layer = empty.layers[static_cast<std::size_t>(*warning.where.layer - 1)];
+    CHECK(layer.length_mm.contains(Role::solid_infill));
+    options.profile.infill.density = 0.15;
+    CHECK(printed(*gearbox, options).diagnostics.empty());
+}
