@@ -163,7 +163,9 @@ bool is_asked_more(const Arguments& arguments) {
 Status check(const CLI::App& app, const Arguments& arguments, std::optional<ExportFormat> format) {
     const bool draws = arguments.layer > 0 || arguments.all_layers;
     const bool is_picture = format && is_drawing(*format);
-    const char* what = draws ? "the picture" : "the export";
+    const char* what = draws                          ? "the picture"
+                       : format == ExportFormat::page ? "the page"
+                                                      : "the export";
     const NamedFile output{what, arguments.output_path};
     if (const Status apart = check_apart(arguments.inputs(), {output}); !apart) return apart;
     if (arguments.info && (draws || app.count("--output") > 0 || !arguments.to.empty()))
@@ -198,11 +200,12 @@ Status bring_in(const CLI::App& app, const Arguments& arguments) {
 }
 
 Status work(const CLI::App& app, const Arguments& arguments) {
+    if (arguments.lyr_path.empty() && arguments.gcode_path.empty())
+        return usage("print is required");
     if (arguments.checks.any())
         return check_print(app, program, arguments.checks, arguments.lyr_path,
                            arguments.output_path, is_asked_more(arguments));
     if (!arguments.gcode_path.empty()) return bring_in(app, arguments);
-    if (arguments.lyr_path.empty()) return usage("print is required");
     if (app.count("--filament-diameter") > 0)
         return usage("--filament-diameter needs --from-gcode: a print states its own");
     std::optional<ExportFormat> format;

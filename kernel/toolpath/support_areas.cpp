@@ -140,10 +140,20 @@ private:
         result_.layers[i] = std::move(standing.contours);
     }
 
+    Contours moved(std::size_t i, Region region, double outwards_mm) {
+        OffsetResult result =
+            offset(region, {.distance_mm = outwards_mm, .allowed_mm = request_.allowed_mm});
+        settle(i, result.unresolved.has_value());
+        return std::move(result.contours);
+    }
+
     // What lies below a layer, with the gaps between support and part, which lines reach over.
     Contours carried_over(std::size_t i) {
         const double low_mm = levels_[i].bottom_mm - request_.gap_z_mm + resolution_mm;
-        std::vector<Region> below{result_.layers[i - 1]};
+        // Rings that are too narrow for a line carry nothing.
+        const Contours support =
+            moved(i, moved(i, result_.layers[i - 1], -sliver_mm() / 2), sliver_mm() / 2);
+        std::vector<Region> below{support};
         for (std::size_t k = i; k-- > 0;) {
             below.push_back(levels_[k].part);
             if (levels_[k].top_mm <= low_mm) break;
@@ -152,12 +162,8 @@ private:
         if (below.empty()) return {};
         const RegionResult all = united(below, request_.allowed_mm);
         const double half_gap_mm = request_.gap_xy_mm / 2 + sliver_mm();
-        const OffsetResult closed =
-            offset(all.contours, {.distance_mm = half_gap_mm, .allowed_mm = request_.allowed_mm});
-        OffsetResult carried = offset(
-            closed.contours, {.distance_mm = -half_gap_mm, .allowed_mm = request_.allowed_mm});
-        settle(i, all.unresolved + closed.unresolved.has_value() + carried.unresolved.has_value());
-        return std::move(carried.contours);
+        settle(i, all.unresolved);
+        return moved(i, moved(i, all.contours, half_gap_mm), -half_gap_mm);
     }
 
     std::span<const SupportLevel> levels_;

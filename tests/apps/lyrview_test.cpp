@@ -89,7 +89,7 @@ TEST_CASE("lyrview: --info sums up and names the file, or standard input") {
 TEST_CASE("lyrview: what is wrong comes as one line and with its status") {
     const Folder folder = with_print("lyrview-wrong");
     check_failure(folder.run("lyrview"), 2, "print");
-    check_failure(folder.run("lyrview a.lyr"), 2, "--info or --layer");
+    check_failure(folder.run("lyrview a.lyr"), 2, "--info, --layer N");
     check_failure(folder.run("lyrview a.lyr --info --layer 1"), 2, "--info or --layer");
     check_failure(folder.run("lyrview a.lyr --info -o x"), 2, "--layer");
     check_failure(folder.run("lyrview a.lyr --info -o -"), 2, "--layer");

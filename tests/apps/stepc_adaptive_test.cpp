@@ -53,7 +53,8 @@ TEST_CASE("stepc --cusp: layers lie on each other, are as thick as allowed, and 
     CAPTURE(sliced.err);
     REQUIRE(sliced.status == 0);
     CHECK(sliced.err.empty());
-    CHECK(sliced.out.find(" in layers of 0.1 to 0.3 mm") != sliced.out.npos);
+    CHECK(sliced.out.find(" in a first layer of 0.2 mm and others of 0.1 to 0.3 mm") !=
+          sliced.out.npos);
     CHECK(sliced.out.find("uniform layers would be 299 of 0.1 mm") != sliced.out.npos);
     const Layers layers = layers_of(folder / "p.lyr");
     REQUIRE(layers.top_mm.size() > 100);

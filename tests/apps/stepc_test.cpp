@@ -266,8 +266,8 @@ TEST_CASE("stepc: the print states the SHA-256 of the model's file, and has two 
     const Folder folder = with_part("stepc-source");
     const Ended sum = folder.run("sha256sum < p.step");
     REQUIRE(sum.out.size() > 64);
-    for (const char* script : {"stepc p.step -o p.lyr --layer-height 1 --threads 1",
-                               "stepc - -o q.lyr --layer-height 1 --threads 4 < p.step"})
+    for (const char* script : {"stepc p.step -o p.lyr --layer-height 0.4 --threads 1",
+                               "stepc - -o q.lyr --layer-height 0.4 --threads 4 < p.step"})
         CHECK(folder.run(script).status == 0);
     for (const char* print : {"p.lyr", "q.lyr"}) {
         CAPTURE(print);

@@ -9,12 +9,12 @@ lyr.decode = (() => {
     const {Damage, coordinateLimit, largestSetting} = lyr.file;
     const {Grid, RowPredictor, limit: hatchLimit} = lyr.grid;
     const {Motions, kind, flag, roles} = lyr.motions;
-    const {History, longestHistory} = lyr.packed;
+    const {History} = lyr.packed;
 
     const code = {
         lines: 0x00, arcs: 0x10, climbingLines: 0x20, climbingArcs: 0x30, travel: 0x40, climbingTravel: 0x41,
         circleCcw: 0x42, circleCw: 0x43, helixCcw: 0x44, helixCw: 0x45, grid: 0x46, hatch: 0x47, smoothRun: 0x48,
-        parallelRun: 0x49, wipe: 0x4a, path: 0x50,
+        parallelRun: 0x49, repeatedRun: 0x4a, wipe: 0x4b, path: 0x50,
         width: 0x51, speed: 0x52, acceleration: 0x53, travelSpeed: 0x54, travelAcceleration: 0x55, retract: 0x56,
         temperature: 0x57, fan: 0x58, dwell: 0x59, tool: 0x5a, pause: 0x5b, object: 0x5c, firstSkippable: 0xf0,
     };
@@ -38,7 +38,8 @@ lyr.decode = (() => {
             this.grid = null;
             this.predictor = new RowPredictor();
             this.history = new History();
-            this.parallel = {back: 0, distance: 0}; // of the last parallel run
+            this.back = 0; // of the last parallel or repeated run
+            this.distance = 0; // of the last parallel run
             this.noteStyle();
         }
 
@@ -62,7 +63,7 @@ lyr.decode = (() => {
                 for (let i = 0; i < count; ++i) this.runPiece(op & 0xf0);
                 return count;
             }
-            if (op === code.smoothRun || op === code.parallelRun) return this.packedRun(op === code.parallelRun);
+            if (op >= code.smoothRun && op <= code.repeatedRun) return this.packedRun(op);
             if (op <= code.wipe) this.motion(op);
             else if (op >= code.path && op <= code.travelAcceleration) this.changeStyle(op);
             else if (op >= code.retract && op <= code.object) this.machine(op);
@@ -118,38 +119,36 @@ lyr.decode = (() => {
         }
 
         // Returns how many motions it was.
-        packedRun(isParallel) {
-            const c = this.cursor, {parallel} = this;
+        packedRun(op) {
+            const c = this.cursor;
             this.mustExtrude();
-            if (isParallel) {
-                parallel.back += c.signed();
-                parallel.distance += c.signed();
-                if (parallel.back < 2 || parallel.back > longestHistory || Math.abs(parallel.distance) > furthest)
-                    throw new Damage("a parallel run is out of range");
-            }
+            if (op !== code.smoothRun) this.back += c.signed();
+            if (op === code.parallelRun) this.distance += c.signed();
+            const least = op === code.parallelRun ? 2 : 1;
+            if (op !== code.smoothRun && (this.back < least || !this.history.before(this.back)))
+                throw new Damage("a run leans on motions out of reach");
+            if (Math.abs(this.distance) > furthest)
+                throw new Damage("a run is too far from what it is parallel to");
             const count = c.varint(), orders = c.byte(), bits = new lyr.packed.Bits(c);
             if (count === 0) throw new Damage("a run has no motion");
-            for (let i = 0; i < count && !c.bad; ++i) this.packedMotion(bits, orders, isParallel);
+            for (let i = 0; i < count && !c.bad; ++i) this.packedMotion(bits, orders, op);
             if (!bits.end()) throw new Damage("a run ends in bits that are not 0");
             return count;
         }
 
-        packedMotion(bits, orders, isParallel) {
-            const from = this.at;
+        packedMotion(bits, orders, op) {
+            const from = this.at, {history} = this;
             let expected = {x: from.x, y: from.y, sagitta: 0};
-            if (isParallel) {
-                const {back, distance} = this.parallel;
-                const old = this.history.before(back);
-                if (!old) throw new Damage("a parallel run reaches no motion");
-                expected = lyr.packed.parallel(old, this.history.before(back - 1), distance / 16);
-            }
+            if (op === code.parallelRun)
+                expected = lyr.packed.parallel(history.before(this.back), history.before(this.back - 1), this.distance / 16);
+            if (op === code.repeatedRun) expected = lyr.packed.repeated(history.before(this.back), from);
             const x = bits.signed(orders & 15), y = bits.signed(orders & 15), more = bits.signed(orders >> 4);
             const to = this.checked({x: expected.x + x, y: expected.y + y, z: from.z});
-            if (!isParallel)
-                expected.sagitta = lyr.packed.smoothSagitta(this.history.before(1), from, to.x - from.x, to.y - from.y);
+            if (op === code.smoothRun)
+                expected.sagitta = lyr.packed.smoothSagitta(history.before(1), from, to.x - from.x, to.y - from.y);
             const sagitta = expected.sagitta + more;
             if (same(from, to)) throw new Damage("a motion of a packed run has no length");
-            this.history.add(from, to, sagitta);
+            history.add(from, to, sagitta);
             if (sagitta === 0) this.line(to, 0);
             else this.arc(to, sagitta);
         }

@@ -107,5 +107,10 @@ lyr.packed = (() => {
         };
     }
 
-    return {Bits, History, longestHistory, smoothSagitta, parallel};
+    // Where `old` ends if it begins at a point: {x, y, sagitta}.
+    function repeated(old, at) {
+        return {x: at.x + old.x1 - old.x0, y: at.y + old.y1 - old.y0, sagitta: old.sagitta};
+    }
+
+    return {Bits, History, smoothSagitta, parallel, repeated};
 })();

@@ -145,10 +145,10 @@ TEST_CASE("canvas 2: strokes of all directions, far outside or through, are cut 
         Canvas canvas({20, 10});
         for (int i = 0; i < 64; ++i) {
             const double angle = i * 0.0982, x = far * std::cos(angle), y = far * std::sin(angle);
-            canvas.draw({30 - x, 15 - y, 30 + x, 15 + y, 2, 3, 200});
+            canvas.draw({20 - x, 10 - y, 20 + x, 10 + y, 2, 3, 200});
             canvas.draw({x, y, x + 1, y + 1, 2, 3, 200});
         }
-        canvas.draw({30, 15, 30, 15, 4, 0, 200});
+        canvas.draw({20, 10, 20, 10, 4, 0, 200});
         const Picture picture = picture_of(canvas.thumbnail({20, 10}, Canvas::samples));
         CHECK(picture.brightness(10, 5) > 0);
         CHECK(picture.drawn() <= 200);
@@ -156,7 +156,7 @@ TEST_CASE("canvas 2: strokes of all directions, far outside or through, are cut 
 }
 
 TEST_CASE("canvas: the nearer of two strokes that cross is seen, whichever is drawn first") {
-    const Canvas::Stroke near{0, 15, 60, 15, 4, 0, 250, 2, 2}, far{30, 0, 30, 30, 4, 0, 50, 1, 1};
+    const Canvas::Stroke near{0, 10, 40, 10, 4, 0, 250, 2, 2}, far{20, 0, 20, 20, 4, 0, 50, 1, 1};
     for (const bool near_first : {true, false}) {
         Canvas canvas({20, 10});
         canvas.draw(near_first ? near : far);
