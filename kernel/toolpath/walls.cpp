@@ -93,9 +93,8 @@ private:
         if (reaches &&
             is_even(inner(depth), inner(depth + 1), middle_mm(depth + 1) - middle_mm(depth)))
             return true;
-        // What vanishes further in may be smaller than its own wall.
-        const bool vanishes = inner(depth + 1).size() < inner(depth).size();
-        return !vanishes && !is_narrow(depth) && (reaches || is_reached(outer(depth), depth));
+        return !is_small(inner(depth)) && !is_narrow(depth) &&
+               (reaches || is_reached(outer(depth), depth));
     }
 
     // Whether the boundaries at two distances are what an even change leads to from one to the other.
@@ -104,6 +103,15 @@ private:
         const double between = area_mm2(outer) - area_mm2(inner);
         const double expected = distance_mm * (length_mm(outer) + length_mm(inner)) / 2;
         return std::abs(between - expected) <= unseen_mm * unseen_mm;
+    }
+
+    // Whether a wall may be smaller than itself: a region has discs as large as its area over its length at least.
+    bool is_small(Region wall) const {
+        const double radius_mm = least_space_share * spacing_mm_ / 2;
+        return std::any_of(wall.begin(), wall.end(), [&](const Contour& contour) {
+            const double area = lyr::area_mm2(contour);
+            return area > 0 && area < radius_mm * lyr::length_mm(contour);
+        });
     }
 
     // Of the direction before and behind the corners to the left. Smooth ones cost a comparison.
