@@ -1,10 +1,12 @@
 // Eight bytes a step by eight tables (Kounavis and Berry, "A systematic approach to building high
 // performance software-based CRC generators"): table k holds what a byte contributes after k
-// more bytes, and contributions add up by exclusive or.
+// more bytes, and contributions add up by exclusive or. Processors that know this very polynomial
+// (SSE 4.2) are asked instead, eight bytes at a time.
 
 #include "format/crc32c.h"
 
 #include <array>
+#include <cstring>
 
 #include "format/bytes.h"
 
@@ -33,9 +35,40 @@ constexpr std::array<Table, 8> make_tables() {
 
 constexpr std::array<Table, 8> tables = make_tables();
 
+#ifdef __x86_64__
+bool has_instruction() {
+    static const bool has = __builtin_cpu_supports("sse4.2") != 0;
+    return has;
+}
+
+__attribute__((target("sse4.2"))) std::uint32_t by_instruction(std::span<const std::byte> bytes,
+                                                               std::uint32_t crc) {
+    const std::byte* at = bytes.data();
+    std::size_t left = bytes.size();
+    std::uint64_t wide = crc;
+    for (; left >= 8; left -= 8, at += 8) {
+        std::uint64_t eight;
+        std::memcpy(&eight, at, sizeof eight);
+        wide = __builtin_ia32_crc32di(wide, eight);
+    }
+    crc = static_cast<std::uint32_t>(wide);
+    for (; left > 0; --left, ++at)
+        crc = __builtin_ia32_crc32qi(crc, static_cast<unsigned char>(*at));
+    return crc;
+}
+#else
+bool has_instruction() {
+    return false;
+}
+
+std::uint32_t by_instruction(std::span<const std::byte>, std::uint32_t crc) {
+    return crc;
+}
+#endif
+
 }  // namespace
 
-std::uint32_t crc32c(std::span<const std::byte> bytes, std::uint32_t before) {
+std::uint32_t crc32c_by_tables(std::span<const std::byte> bytes, std::uint32_t before) {
     std::uint32_t crc = ~before;
     const std::byte* at = bytes.data();
     std::size_t left = bytes.size();
@@ -49,6 +82,10 @@ std::uint32_t crc32c(std::span<const std::byte> bytes, std::uint32_t before) {
         crc = (crc >> 8) ^ tables[0][(crc ^ static_cast<std::uint32_t>(*at)) & 0xff];
     }
     return ~crc;
+}
+
+std::uint32_t crc32c(std::span<const std::byte> bytes, std::uint32_t before) {
+    return has_instruction() ? ~by_instruction(bytes, ~before) : crc32c_by_tables(bytes, before);
 }
 
 }  // namespace lyr::format

@@ -16,4 +16,7 @@ namespace lyr::format {
 
 std::uint32_t crc32c(std::span<const std::byte> bytes, std::uint32_t before = 0);
 
+// The same, on any processor.
+std::uint32_t crc32c_by_tables(std::span<const std::byte> bytes, std::uint32_t before = 0);
+
 }  // namespace lyr::format
