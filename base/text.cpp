@@ -5,6 +5,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdarg>
 #include <cstdio>
 
 namespace lyr {
@@ -108,6 +109,15 @@ std::string shortest(double value) {
     char text[32];
     const auto [end, error] = std::to_chars(text, text + sizeof text, value);
     return error == std::errc() ? std::string(text, end) : std::string();
+}
+
+std::string formatted(const char* format, ...) {
+    std::array<char, 512> line{};
+    std::va_list values;
+    va_start(values, format);
+    std::vsnprintf(line.data(), line.size(), format, values);
+    va_end(values);
+    return line.data();
 }
 
 }  // namespace lyr

@@ -22,6 +22,9 @@ std::string counted(std::uint64_t count, std::string_view noun);
 // Decimal, with or without exponent, and nothing else in the text; none if not finite.
 std::optional<double> finite_number(std::string_view text);
 
+// As printf, up to 511 bytes; the rest is cut off.
+[[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);
+
 // The fewest digits that read back as the same number: 25.4, 1e-05.
 std::string shortest(double value);
 

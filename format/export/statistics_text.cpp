@@ -1,22 +1,13 @@
 // The text of lyrview --info.
 
 #include <cmath>
-#include <cstdarg>
 #include <cstdio>
 
+#include "base/text.h"
 #include "format/export/statistics.h"
 
 namespace lyr::format {
 namespace {
-
-[[gnu::format(printf, 2, 3)]] void append(std::string& text, const char* format, ...) {
-    char line[256];
-    va_list values;
-    va_start(values, format);
-    std::vsnprintf(line, sizeof line, format, values);
-    va_end(values);
-    text += line;
-}
 
 // A file's text must not steer the terminal.
 std::string printable(std::string value) {
@@ -53,8 +44,8 @@ void append_head(std::string& text, const Statistics& s, const std::string& name
     const FileHeader& header = s.header;
     const Metadata& metadata = header.metadata;
     text += name;
-    append(text, ": .lyr %u.%u, %s bytes, whole\n", header.major, header.minor,
-           grouped(s.bytes).c_str());
+    text += formatted(": .lyr %u.%u, %s bytes, whole\n", header.major, header.minor,
+                      grouped(s.bytes).c_str());
     append_known(text, "source        ", metadata.source_name);
     append_known(text, "  sha-256     ", metadata.source_sha256);
     append_known(text, "made by       ", metadata.generator);
@@ -64,39 +55,41 @@ void append_head(std::string& text, const Statistics& s, const std::string& name
     for (const std::string& object : metadata.objects) append_known(text, "object        ", object);
     for (const auto& [key, value] : metadata.extra)
         append_known(text, "              ", key + " = " + value);
-    append(text, "resolution    %g um", header.quantum.nm / 1e3);
-    if (metadata.tolerance_mm > 0) append(text, ", tolerance %g mm", metadata.tolerance_mm);
+    text += formatted("resolution    %g um", header.quantum.nm / 1e3);
+    if (metadata.tolerance_mm > 0) text += formatted(", tolerance %g mm", metadata.tolerance_mm);
     text += '\n';
 }
 
 void append_size(std::string& text, const Statistics& s) {
     const Summary& summary = s.header.summary;
-    append(text, "layers        %u", s.layers);
+    text += formatted("layers        %u", s.layers);
     if (s.layers > 0) {
-        append(text, ", z %.3f to %.3f mm, ", s.lowest_layer_mm, s.highest_layer_mm);
+        text += formatted(", z %.3f to %.3f mm, ", s.lowest_layer_mm, s.highest_layer_mm);
         if (s.least_height_mm == s.most_height_mm)
-            append(text, "%g mm thick", s.most_height_mm);
+            text += formatted("%g mm thick", s.most_height_mm);
         else
-            append(text, "%g to %g mm thick", s.least_height_mm, s.most_height_mm);
+            text += formatted("%g to %g mm thick", s.least_height_mm, s.most_height_mm);
     }
-    append(text,
-           "\nbox           x %.3f to %.3f, y %.3f to %.3f, z %.3f to %.3f mm (%.2f x %.2f mm)\n",
-           summary.low_x_mm, summary.high_x_mm, summary.low_y_mm, summary.high_y_mm,
-           summary.low_z_mm, summary.high_z_mm, summary.high_x_mm - summary.low_x_mm,
-           summary.high_y_mm - summary.low_y_mm);
+    text += formatted(
+        "\nbox           x %.3f to %.3f, y %.3f to %.3f, z %.3f to %.3f mm (%.2f x %.2f mm)\n",
+        summary.low_x_mm, summary.high_x_mm, summary.low_y_mm, summary.high_y_mm, summary.low_z_mm,
+        summary.high_z_mm, summary.high_x_mm - summary.low_x_mm,
+        summary.high_y_mm - summary.low_y_mm);
     if (s.hottest_tool_c > 0 || s.hottest_bed_c > 0)
-        append(text, "temperatures  nozzle %g, bed %g deg C\n", s.hottest_tool_c, s.hottest_bed_c);
+        text +=
+            formatted("temperatures  nozzle %g, bed %g deg C\n", s.hottest_tool_c, s.hottest_bed_c);
 }
 
 void append_roles(std::string& text, const Statistics& s) {
-    append(text, "\n%-18s%10s%10s%10s%9s%12s%13s%13s\n", "role", "paths", "lines", "arcs",
-           "circles", "hatch lines", "length m", "volume cm3");
+    text += formatted("\n%-18s%10s%10s%10s%9s%12s%13s%13s\n", "role", "paths", "lines", "arcs",
+                      "circles", "hatch lines", "length m", "volume cm3");
     RoleStatistics sum;
     const auto row = [&](std::string_view name, const RoleStatistics& role) {
-        append(text, "%-18.*s%10s%10s%10s%9s%12s%13.3f%13.3f\n", static_cast<int>(name.size()),
-               name.data(), grouped(role.paths).c_str(), grouped(role.lines).c_str(),
-               grouped(role.arcs).c_str(), grouped(role.circles).c_str(),
-               grouped(role.hatch_lines).c_str(), role.length_mm / 1e3, role.volume_mm3 / 1e3);
+        text += formatted("%-18.*s%10s%10s%10s%9s%12s%13.3f%13.3f\n", static_cast<int>(name.size()),
+                          name.data(), grouped(role.paths).c_str(), grouped(role.lines).c_str(),
+                          grouped(role.arcs).c_str(), grouped(role.circles).c_str(),
+                          grouped(role.hatch_lines).c_str(), role.length_mm / 1e3,
+                          role.volume_mm3 / 1e3);
     };
     for (std::size_t i = 0; i < s.roles.size(); ++i) {
         const RoleStatistics& role = s.roles[i];
@@ -111,17 +104,17 @@ void append_roles(std::string& text, const Statistics& s) {
         sum.volume_mm3 += role.volume_mm3;
     }
     row("all", sum);
-    append(text, "%-18s%64.3f\n", "travel", s.travel_mm / 1e3);
+    text += formatted("%-18s%64.3f\n", "travel", s.travel_mm / 1e3);
 }
 
 void append_bytes(std::string& text, const Statistics& s) {
-    append(text, "\n%-18s%12s%14s%12s%10s\n", "operation", "count", "bytes", "each", "share");
+    text += formatted("\n%-18s%12s%14s%12s%10s\n", "operation", "count", "bytes", "each", "share");
     const auto row = [&](const char* name, const KindStatistics& kind) {
         if (kind.count == 0) return;
-        append(text, "%-18s%12s%14s%12.2f%8.1f %%\n", name, grouped(kind.count).c_str(),
-               grouped(kind.bytes).c_str(),
-               static_cast<double>(kind.bytes) / static_cast<double>(kind.count),
-               100 * static_cast<double>(kind.bytes) / static_cast<double>(s.bytes));
+        text += formatted("%-18s%12s%14s%12.2f%8.1f %%\n", name, grouped(kind.count).c_str(),
+                          grouped(kind.bytes).c_str(),
+                          static_cast<double>(kind.bytes) / static_cast<double>(kind.count),
+                          100 * static_cast<double>(kind.bytes) / static_cast<double>(s.bytes));
     };
     row("line", s.lines);
     row("arc", s.arcs);
@@ -133,22 +126,24 @@ void append_bytes(std::string& text, const Statistics& s) {
     row("setting", s.settings);
     row("layer", s.layer_heads);
     row("everything else", s.rest);
-    append(text, "%s operations in %s chunks; %s hatch runs with %s travels; %s retractions\n",
-           grouped(s.operations).c_str(), grouped(s.chunks).c_str(), grouped(s.hatch_runs).c_str(),
-           grouped(s.hatch_travels).c_str(), grouped(s.retractions).c_str());
+    text += formatted("%s operations in %s chunks; %s hatch runs with %s travels; %s retractions\n",
+                      grouped(s.operations).c_str(), grouped(s.chunks).c_str(),
+                      grouped(s.hatch_runs).c_str(), grouped(s.hatch_travels).c_str(),
+                      grouped(s.retractions).c_str());
 }
 
 void append_estimates(std::string& text, const Statistics& s) {
     const Summary& summary = s.header.summary;
-    append(text, "\nfilament      %.3f m of %g mm", summary.filament_mm / 1e3,
-           s.header.metadata.filament_diameter_mm);
-    if (summary.mass_g > 0) append(text, ", %.1f g", summary.mass_g);
-    append(text, "\ntime          ");
+    text += formatted("\nfilament      %.3f m of %g mm", summary.filament_mm / 1e3,
+                      s.header.metadata.filament_diameter_mm);
+    if (summary.mass_g > 0) text += formatted(", %.1f g", summary.mass_g);
+    text += formatted("\ntime          ");
     if (summary.estimated_time_s > 0)
-        append(text, "%s, estimated by the slicer\n", duration(summary.estimated_time_s).c_str());
+        text +=
+            formatted("%s, estimated by the slicer\n", duration(summary.estimated_time_s).c_str());
     else
-        append(text, "more than %s (way over speed, without accelerations)\n",
-               duration(s.moving_time_s + s.dwell_time_s).c_str());
+        text += formatted("more than %s (way over speed, without accelerations)\n",
+                          duration(s.moving_time_s + s.dwell_time_s).c_str());
 }
 
 }  // namespace

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <string_view>
+
+#include "base/text.h"
+#include "target/config/key_rules.h"
 
 namespace lyr::config {
 namespace {
@@ -12,51 +14,17 @@ namespace {
 constexpr std::array<std::string_view, 3> kinematics_names{"cartesian", "corexy", "delta"};
 constexpr std::array<std::string_view, 4> shaper_names{"none", "zv", "mzv", "ei"};
 
-struct Interval {
-    double low, high;
-};
-
-std::string numbered(const char* format, double a, double b) {
-    std::array<char, 160> text{};
-    std::snprintf(text.data(), text.size(), format, a, b);
-    return text.data();
-}
-
-std::string expected_in(Interval interval) {
-    return numbered("expected a number from %g to %g", interval.low, interval.high);
-}
-
-std::optional<double> number_of(const toml::node& node, Interval interval) {
-    if (!node.is_number()) return std::nullopt;
-    const std::optional<double> value = node.value<double>();
-    // False for what is not a number, too.
-    if (!value || !(*value >= interval.low && *value <= interval.high)) return std::nullopt;
-    return value;
-}
-
-using Store = std::function<void(Draft&, double)>;
-
-Key number_key(std::string path, Interval interval, const Store& store) {
-    return {std::move(path), false, false,
-            [interval, store](const toml::node& node, Draft& draft) -> Complaint {
-                const std::optional<double> value = number_of(node, interval);
-                if (!value) return expected_in(interval);
-                store(draft, *value);
-                return std::nullopt;
-            }};
-}
-
 // One number for all three towers, or a list of three.
-Key towers_key(std::string path, Interval interval, std::array<double, 3> DeltaFrame::*field) {
+Key towers_key(std::string path, Range range, std::array<double, 3> DeltaFrame::*field) {
     return {std::move(path), false, false,
-            [interval, field](const toml::node& node, Draft& draft) -> Complaint {
+            [range, field](const toml::node& node, Draft& draft) -> Complaint {
                 std::array<double, 3> values{};
                 const auto* list = node.as_array();
                 if (list && list->size() != values.size())
                     return "expected a number or a list of three";
                 for (std::size_t i = 0; i < values.size(); ++i) {
-                    const auto value = number_of(list ? *list->get(i) : node, interval);
-                    if (!value) return expected_in(interval) + ", or a list of three";
+                    const auto value = number_in(list ? *list->get(i) : node, range);
+                    if (!value) return expected(text_of(range) + ", or a list of three", node);
                     values[i] = *value;
                 }
                 draft.printer.delta.*field = values;
@@ -93,10 +61,10 @@ void append_shaper(std::vector<Key>& keys, std::size_t axis) {
         d.printer.shapers[axis].kind = static_cast<ShaperKind>(kind);
     }));
     // Below, the copies of a motion are a second apart; above, no frame of a printer vibrates.
-    keys.push_back(number_key(path + "frequency_hz", {2, 500}, [axis](Draft& d, double value) {
+    keys.push_back(number(path + "frequency_hz", {2, 500}, [axis](Draft& d, double value) {
         d.printer.shapers[axis].frequency_hz = value;
     }));
-    keys.push_back(number_key(path + "damping", {0, 0.9}, [axis](Draft& d, double value) {
+    keys.push_back(number(path + "damping", {0, 0.9}, [axis](Draft& d, double value) {
         d.printer.shapers[axis].damping = value;
     }));
 }
@@ -116,9 +84,9 @@ void append_delta_problems(const Printer& printer,
         if (frame.radius_mm[i] + frame.reach_mm > flattest_arm_share * frame.arm_mm[i]) {
             problems.emplace_back(
                 "delta.reach_mm",
-                numbered(": an arm of %g mm reaches %g mm from the middle at the most",
-                         frame.arm_mm[i],
-                         std::max(0.0, flattest_arm_share * frame.arm_mm[i] - frame.radius_mm[i])));
+                formatted(
+                    ": an arm of %g mm reaches %g mm from the middle at the most", frame.arm_mm[i],
+                    std::max(0.0, flattest_arm_share * frame.arm_mm[i] - frame.radius_mm[i])));
             break;
         }
     if (std::hypot(printer.start_mm[0], printer.start_mm[1]) > frame.reach_mm)
@@ -131,22 +99,22 @@ void append_machine_keys(std::vector<Key>& keys) {
     keys.push_back(choice_key("kinematics", kinematics_names, [](Draft& d, std::size_t kind) {
         d.printer.kinematics = static_cast<Kinematics>(kind);
     }));
-    keys.push_back(number_key("max_jerk_mm_s3", {0, 1e9},
-                              [](Draft& d, double v) { d.printer.max_jerk_mm_s3 = v; }));
+    keys.push_back(number("max_jerk_mm_s3", {0, 1e9},
+                          [](Draft& d, double v) { d.printer.max_jerk_mm_s3 = v; }));
     keys.push_back(towers_key("delta.arm_mm", {1, 10'000}, &DeltaFrame::arm_mm));
     keys.push_back(towers_key("delta.radius_mm", {1, 10'000}, &DeltaFrame::radius_mm));
     keys.push_back(towers_key("delta.tower_angle_deg", {-360, 360}, &DeltaFrame::tower_angle_deg));
-    keys.push_back(number_key("delta.reach_mm", {1, 10'000},
-                              [](Draft& d, double v) { d.printer.delta.reach_mm = v; }));
+    keys.push_back(number("delta.reach_mm", {1, 10'000},
+                          [](Draft& d, double v) { d.printer.delta.reach_mm = v; }));
     for (std::size_t axis = axis_x; axis <= axis_z; ++axis) {
         append_shaper(keys, axis);
-        keys.push_back(number_key("axis." + std::string(axis_names[axis]) + ".backlash_mm", {0, 2},
-                                  [axis](Draft& d, double v) { d.printer.backlash_mm[axis] = v; }));
+        keys.push_back(number("axis." + std::string(axis_names[axis]) + ".backlash_mm", {0, 2},
+                              [axis](Draft& d, double v) { d.printer.backlash_mm[axis] = v; }));
     }
-    keys.push_back(number_key("pressure_advance.advance_s", {0, 2},
-                              [](Draft& d, double v) { d.printer.pressure_advance_s = v; }));
-    keys.push_back(number_key("pressure_advance.smooth_s", {0.001, 0.2},
-                              [](Draft& d, double v) { d.printer.pressure_smooth_s = v; }));
+    keys.push_back(number("pressure_advance.advance_s", {0, 2},
+                          [](Draft& d, double v) { d.printer.pressure_advance_s = v; }));
+    keys.push_back(number("pressure_advance.smooth_s", {0.001, 0.2},
+                          [](Draft& d, double v) { d.printer.pressure_smooth_s = v; }));
 }
 
 Problems machine_problems(const Printer& printer,

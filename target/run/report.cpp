@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 
+#include "base/text.h"
 #include "target/motion/time_walk.h"
 #include "target/run/simulate.h"
 
@@ -21,21 +20,12 @@ constexpr double ns_per_us = 1e3;
 // Of positions in double precision, in steps: far above rounding, far below anything a motor does.
 constexpr double rounding_steps = 1e-6;
 
-[[gnu::format(printf, 2, 3)]] void append(std::string& text, const char* format, ...) {
-    std::array<char, 512> line{};
-    std::va_list values;
-    va_start(values, format);
-    std::vsnprintf(line.data(), line.size(), format, values);
-    va_end(values);
-    text += line.data();
-}
-
 std::string duration_text(double time_s) {
     const auto whole_s = static_cast<long long>(time_s);
     std::string text;
-    if (whole_s >= 3600) append(text, "%lld h ", whole_s / 3600);
-    if (whole_s >= 60) append(text, "%lld min ", whole_s / 60 % 60);
-    append(text, "%.3f s", std::fmod(time_s, 60));
+    if (whole_s >= 3600) text += formatted("%lld h ", whole_s / 3600);
+    if (whole_s >= 60) text += formatted("%lld min ", whole_s / 60 % 60);
+    text += formatted("%.3f s", std::fmod(time_s, 60));
     return text;
 }
 
@@ -48,22 +38,23 @@ double rate_hz(const PulseFigures& figures) {
 std::string microseconds(const std::optional<std::int64_t>& duration_ns) {
     if (!duration_ns) return "-";
     std::string text;
-    append(text, "%.3f", static_cast<double>(*duration_ns) / ns_per_us);
+    text += formatted("%.3f", static_cast<double>(*duration_ns) / ns_per_us);
     return text;
 }
 
 void append_axes(std::string& text, const SimulationReport& report) {
-    append(text, "  %-4s %12s %12s %10s %13s %13s %11s %11s %11s\n", "axis", "steps", "net",
-           "reversals", "shortest us", "longest us", "steps/s", "off file", "off plan");
+    text += formatted("  %-4s %12s %12s %10s %13s %13s %11s %11s %11s\n", "axis", "steps", "net",
+                      "reversals", "shortest us", "longest us", "steps/s", "off file", "off plan");
     for (std::size_t i = 0; i < axis_count; ++i) {
         const PulseFigures& pulses = report.pulses[i];
-        append(text, "  %-4s %12llu %12lld %10llu %13s %13s %11.0f %11.6f %11.6f\n",
-               std::string(axis_names[i]).c_str(), static_cast<unsigned long long>(pulses.steps),
-               static_cast<long long>(report.positions[i]),
-               static_cast<unsigned long long>(pulses.reversals),
-               microseconds(pulses.shortest_interval_ns).c_str(),
-               microseconds(pulses.longest_interval_ns).c_str(), rate_hz(pulses),
-               report.path.steps[i], report.planned_steps[i]);
+        text += formatted("  %-4s %12llu %12lld %10llu %13s %13s %11.0f %11.6f %11.6f\n",
+                          std::string(axis_names[i]).c_str(),
+                          static_cast<unsigned long long>(pulses.steps),
+                          static_cast<long long>(report.positions[i]),
+                          static_cast<unsigned long long>(pulses.reversals),
+                          microseconds(pulses.shortest_interval_ns).c_str(),
+                          microseconds(pulses.longest_interval_ns).c_str(), rate_hz(pulses),
+                          report.path.steps[i], report.planned_steps[i]);
     }
 }
 
@@ -83,10 +74,10 @@ void append_heat(std::string& text, const SimulationReport& report) {
     for (const HeatFigures& heat : report.heat) {
         const double power_w = report.printer.heaters[heat.heater]->model.power_w;
         constexpr double j_per_wh = 3'600;
-        append(text, "%s %s to %.1f °C at most with %.1f Wh",
-               &heat == &report.heat.front() ? "" : ",",
-               std::string(config::heater_names[heat.heater]).c_str(), heat.highest_c,
-               heat.full_power_s * power_w / j_per_wh);
+        text += formatted("%s %s to %.1f °C at most with %.1f Wh",
+                          &heat == &report.heat.front() ? "" : ",",
+                          std::string(config::heater_names[heat.heater]).c_str(), heat.highest_c,
+                          heat.full_power_s * power_w / j_per_wh);
     }
     text += '\n';
 }
@@ -113,7 +104,7 @@ void append_json(std::string& text, const char* before, const std::string& value
     for (const char c : value) {
         if (c == '"' || c == '\\') text += '\\';
         if (static_cast<unsigned char>(c) < 0x20)
-            append(text, "\\u%04x", static_cast<unsigned>(c));
+            text += formatted("\\u%04x", static_cast<unsigned>(c));
         else
             text += c;
     }
@@ -122,23 +113,24 @@ void append_json(std::string& text, const char* before, const std::string& value
 
 void append_json(std::string& text, const char* key, const std::optional<std::int64_t>& value) {
     if (value)
-        append(text, ",\"%s\":%lld", key, static_cast<long long>(*value));
+        text += formatted(",\"%s\":%lld", key, static_cast<long long>(*value));
     else
-        append(text, ",\"%s\":null", key);
+        text += formatted(",\"%s\":null", key);
 }
 
 void append_json_axes(std::string& text, const SimulationReport& report) {
     text += ",\"axes\":{";
     for (std::size_t i = 0; i < axis_count; ++i) {
         const PulseFigures& pulses = report.pulses[i];
-        append(text, "%s\"%s\":{\"steps\":%llu,\"net_steps\":%lld,\"reversals\":%llu", i ? "," : "",
-               std::string(axis_names[i]).c_str(), static_cast<unsigned long long>(pulses.steps),
-               static_cast<long long>(report.positions[i]),
-               static_cast<unsigned long long>(pulses.reversals));
+        text += formatted("%s\"%s\":{\"steps\":%llu,\"net_steps\":%lld,\"reversals\":%llu",
+                          i ? "," : "", std::string(axis_names[i]).c_str(),
+                          static_cast<unsigned long long>(pulses.steps),
+                          static_cast<long long>(report.positions[i]),
+                          static_cast<unsigned long long>(pulses.reversals));
         append_json(text, "shortest_interval_ns", pulses.shortest_interval_ns);
         append_json(text, "longest_interval_ns", pulses.longest_interval_ns);
-        append(text, ",\"max_rate_hz\":%.3f,\"off_file_steps\":%.9f,\"off_plan_steps\":%.9f}",
-               rate_hz(pulses), report.path.steps[i], report.planned_steps[i]);
+        text += formatted(",\"max_rate_hz\":%.3f,\"off_file_steps\":%.9f,\"off_plan_steps\":%.9f}",
+                          rate_hz(pulses), report.path.steps[i], report.planned_steps[i]);
     }
     text += '}';
 }
@@ -173,32 +165,33 @@ std::string text_of(const SimulationReport& report) {
     const PathTotals& totals = report.inspection.totals;
     std::string text;
     text += report.file + " on printer \"" + report.printer.name + "\", simulated\n";
-    append(text, "  layers       %u, %llu motions\n", totals.layers,
-           static_cast<unsigned long long>(totals.motions));
+    text += formatted("  layers       %u, %llu motions\n", totals.layers,
+                      static_cast<unsigned long long>(totals.motions));
     text += "  print time   " + duration_text(report.print_time_s);
     if (report.delayed_ns)
-        append(text, ", of it %.3f us for the drivers' edges",
-               static_cast<double>(report.delayed_ns) / ns_per_us);
+        text += formatted(", of it %.3f us for the drivers' edges",
+                          static_cast<double>(report.delayed_ns) / ns_per_us);
     if (report.waited_s > 0)
         text += ", and " + duration_text(report.waited_s) + " of waiting for temperatures";
-    append(text, "\n  extruded     %.3f mm with %.3f mm of %.2f mm filament\n", totals.extruded_mm,
-           totals.filament_mm, report.inspection.filament_diameter_mm);
-    append(text, "  travelled    %.3f mm\n", totals.travelled_mm);
+    text +=
+        formatted("\n  extruded     %.3f mm with %.3f mm of %.2f mm filament\n", totals.extruded_mm,
+                  totals.filament_mm, report.inspection.filament_diameter_mm);
+    text += formatted("  travelled    %.3f mm\n", totals.travelled_mm);
     append_heat(text, report);
     append_axes(text, report);
     text += "  pulses      ";
     for (const Spacing& spacing : spacings)
-        append(text, " %s >= %s us%s", spacing.name,
-               microseconds(shortest(report, spacing.figure)).c_str(),
-               &spacing == &spacings.back() ? "\n" : ",");
+        text += formatted(" %s >= %s us%s", spacing.name,
+                          microseconds(shortest(report, spacing.figure)).c_str(),
+                          &spacing == &spacings.back() ? "\n" : ",");
     const Deviation& path = report.path;
-    append(text, "  off file     %.6f microsteps at most, %.6f mm in space", path.worst_steps,
-           path.distance_mm);
-    append(text, " (axis %s, layer %u, x %.3f y %.3f z %.3f)\n",
-           std::string(axis_names[path.worst_axis]).c_str(), path.worst_layer + 1,
-           path.worst_at_mm[0], path.worst_at_mm[1], path.worst_at_mm[2]);
-    append(text, "  off plan     %.6f microsteps at most, at the same time\n",
-           *std::max_element(report.planned_steps.begin(), report.planned_steps.end()));
+    text += formatted("  off file     %.6f microsteps at most, %.6f mm in space", path.worst_steps,
+                      path.distance_mm);
+    text += formatted(" (axis %s, layer %u, x %.3f y %.3f z %.3f)\n",
+                      std::string(axis_names[path.worst_axis]).c_str(), path.worst_layer + 1,
+                      path.worst_at_mm[0], path.worst_at_mm[1], path.worst_at_mm[2]);
+    text += formatted("  off plan     %.6f microsteps at most, at the same time\n",
+                      *std::max_element(report.planned_steps.begin(), report.planned_steps.end()));
     text += report.within_limits()
                 ? "  within half a microstep everywhere (times are whole nanoseconds)\n"
                 : "  NOT within half a microstep, or pulses too short\n";
@@ -210,21 +203,21 @@ std::string json_of(const SimulationReport& report) {
     std::string text;
     append_json(text, "{\"file\":", report.file);
     append_json(text, ",\"printer\":", report.printer.name);
-    append(text, ",\"layers\":%u,\"motions\":%llu,\"print_time_s\":%.9f,\"delayed_ns\":%lld",
-           totals.layers, static_cast<unsigned long long>(totals.motions), report.print_time_s,
-           static_cast<long long>(report.delayed_ns));
-    append(text, ",\"waited_s\":%.3f,\"heaters\":{", report.waited_s);
+    text += formatted(",\"layers\":%u,\"motions\":%llu,\"print_time_s\":%.9f,\"delayed_ns\":%lld",
+                      totals.layers, static_cast<unsigned long long>(totals.motions),
+                      report.print_time_s, static_cast<long long>(report.delayed_ns));
+    text += formatted(",\"waited_s\":%.3f,\"heaters\":{", report.waited_s);
     for (const HeatFigures& heat : report.heat)
-        append(text, "%s\"%s\":{\"highest_c\":%.3f,\"full_power_s\":%.3f}",
-               &heat == &report.heat.front() ? "" : ",",
-               std::string(config::heater_names[heat.heater]).c_str(), heat.highest_c,
-               heat.full_power_s);
+        text += formatted("%s\"%s\":{\"highest_c\":%.3f,\"full_power_s\":%.3f}",
+                          &heat == &report.heat.front() ? "" : ",",
+                          std::string(config::heater_names[heat.heater]).c_str(), heat.highest_c,
+                          heat.full_power_s);
     text += '}';
-    append(text, ",\"extruded_mm\":%.6f,\"travelled_mm\":%.6f,\"filament_mm\":%.6f",
-           totals.extruded_mm, totals.travelled_mm, totals.filament_mm);
-    append(text, ",\"deviation_steps\":%.9f,\"deviation_mm\":%.9f,\"within_half_step\":%s",
-           report.worst_steps(), report.path.distance_mm,
-           report.within_limits() ? "true" : "false");
+    text += formatted(",\"extruded_mm\":%.6f,\"travelled_mm\":%.6f,\"filament_mm\":%.6f",
+                      totals.extruded_mm, totals.travelled_mm, totals.filament_mm);
+    text += formatted(",\"deviation_steps\":%.9f,\"deviation_mm\":%.9f,\"within_half_step\":%s",
+                      report.worst_steps(), report.path.distance_mm,
+                      report.within_limits() ? "true" : "false");
     text += ",\"pulses\":{\"writes\":" + std::to_string(report.writes);
     for (const Spacing& spacing : spacings)
         append_json(text, spacing.json_key, shortest(report, spacing.figure));

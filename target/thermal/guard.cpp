@@ -3,8 +3,8 @@
 #include "target/thermal/guard.h"
 
 #include <algorithm>
-#include <cstdarg>
-#include <cstdio>
+
+#include "base/text.h"
 
 namespace lyr::thermal {
 namespace {
@@ -13,15 +13,6 @@ using config::GuardLimits;
 
 // Between the readings that the rate is taken from.
 constexpr double rate_window_s = 0.5;
-
-[[gnu::format(printf, 1, 2)]] std::string text(const char* format, ...) {
-    std::array<char, 300> line{};
-    std::va_list values;
-    va_start(values, format);
-    std::vsnprintf(line.data(), line.size(), format, values);
-    va_end(values);
-    return line.data();
-}
 
 // What every message ends with.
 constexpr const char* consequence =
@@ -44,15 +35,15 @@ std::string bad_text(GuardKind kind, const GuardLimits& limits, const Sample& sa
     const double t = sample.measured.temperature_c, raw = sample.raw.value_or(0);
     switch (kind) {
         case GuardKind::open:
-            return text("the sensor reads %g, full scale: a broken wire or a loose plug", raw);
+            return formatted("the sensor reads %g, full scale: a broken wire or a loose plug", raw);
         case GuardKind::shorted:
-            return text("the sensor reads %g, nothing: a short circuit of its wires", raw);
+            return formatted("the sensor reads %g, nothing: a short circuit of its wires", raw);
         case GuardKind::too_cold:
-            return text(
+            return formatted(
                 "%.1f °C is below range_c, which begins at %g: look at the sensor and its kind", t,
                 limits.low_c);
         case GuardKind::over_temperature:
-            return text(
+            return formatted(
                 "%.1f °C is above range_c, which ends at %g: look at the heater's switch, and at "
                 "the sensor and its kind",
                 t, limits.high_c);
@@ -80,9 +71,9 @@ std::optional<Trip> check_rate(const std::string& heater, const GuardLimits& lim
     if (std::abs(change_c) <= limits.rate_c_s * time_s) return std::nullopt;
     return trip(
         GuardKind::rate, heater,
-        text("the reading went by %.1f °C in %.1f s, to %.1f °C, which no heater does: look "
-             "at the sensor's plug, and whether it sits firmly",
-             change_c, time_s, r[0]));
+        formatted("the reading went by %.1f °C in %.1f s, to %.1f °C, which no heater does: look "
+                  "at the sensor's plug, and whether it sits firmly",
+                  change_c, time_s, r[0]));
 }
 
 void begin_phase(const GuardLimits& limits, GuardState& state, const Sample& sample) {
@@ -110,18 +101,19 @@ std::optional<Trip> check_heating(const std::string& heater, const GuardLimits& 
         if (t < *state.highest_c - limits.stray_c)
             return trip(
                 GuardKind::falling, heater,
-                text("%.1f °C, after %.1f, and falling while it heats to %g °C: look "
-                     "whether sensor and heater sit in the block, and at the heater's wires",
-                     t, *state.highest_c, state.target_c));
+                formatted("%.1f °C, after %.1f, and falling while it heats to %g °C: look "
+                          "whether sensor and heater sit in the block, and at the heater's wires",
+                          t, *state.highest_c, state.target_c));
     }
     if (t >= state.goal_c) {
         state.goal_c = t + limits.gain_c;
         state.goal_time_s = sample.time_s + limits.gain_time_s;
     } else if (sample.time_s >= state.goal_time_s) {
-        return trip(GuardKind::too_slow, heater,
-                    text("%.1f °C on the way to %g °C, less than %g °C more than %g s ago: look at "
-                         "the heater's wires and supply, and whether the sensor sits in the block",
-                         t, state.target_c, limits.gain_c, limits.gain_time_s));
+        return trip(
+            GuardKind::too_slow, heater,
+            formatted("%.1f °C on the way to %g °C, less than %g °C more than %g s ago: look at "
+                      "the heater's wires and supply, and whether the sensor sits in the block",
+                      t, state.target_c, limits.gain_c, limits.gain_time_s));
     }
     return std::nullopt;
 }
@@ -135,10 +127,11 @@ std::optional<Trip> check_holding(const std::string& heater, const GuardLimits& 
     }
     if (!state.below_since_s) state.below_since_s = sample.time_s;
     if (sample.time_s - *state.below_since_s <= limits.stray_time_s) return std::nullopt;
-    return trip(GuardKind::stray, heater,
-                text("%.1f °C, more than %g °C below its target of %g °C for more than %g s: look "
-                     "at the heater's wires and supply, and at draughts",
-                     t, limits.stray_c, state.target_c, limits.stray_time_s));
+    return trip(
+        GuardKind::stray, heater,
+        formatted("%.1f °C, more than %g °C below its target of %g °C for more than %g s: look "
+                  "at the heater's wires and supply, and at draughts",
+                  t, limits.stray_c, state.target_c, limits.stray_time_s));
 }
 
 std::optional<Trip> check_off(const std::string& heater, const GuardLimits& limits,
@@ -157,9 +150,9 @@ std::optional<Trip> check_off(const std::string& heater, const GuardLimits& limi
     if (t <= *state.lowest_c + limits.stray_c) return std::nullopt;
     return trip(
         GuardKind::stuck_on, heater,
-        text("%.1f °C and rising, though it has been switched off for %.0f s: its switch is "
-             "stuck on; cut the power now, and look at the transistor or relay",
-             t, sample.time_s - *state.off_since_s));
+        formatted("%.1f °C and rising, though it has been switched off for %.0f s: its switch is "
+                  "stuck on; cut the power now, and look at the transistor or relay",
+                  t, sample.time_s - *state.off_since_s));
 }
 
 std::optional<Trip> check_frozen(const std::string& heater, const GuardLimits& limits,
@@ -170,10 +163,11 @@ std::optional<Trip> check_frozen(const std::string& heater, const GuardLimits& l
         state.same_since_s = sample.time_s;
     }
     if (sample.time_s - state.same_since_s < limits.frozen_time_s) return std::nullopt;
-    return trip(GuardKind::frozen, heater,
-                text("the converter has read exactly %g for %g s: it is dead, or its driver is; "
-                     "raise guard.frozen_time_s if it has no noise",
-                     *sample.raw, limits.frozen_time_s));
+    return trip(
+        GuardKind::frozen, heater,
+        formatted("the converter has read exactly %g for %g s: it is dead, or its driver is; "
+                  "raise guard.frozen_time_s if it has no noise",
+                  *sample.raw, limits.frozen_time_s));
 }
 
 }  // namespace
