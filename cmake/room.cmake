@@ -2,8 +2,10 @@
 # a room sees the headers of the rooms that it links and of no other.
 
 add_library(lyr_flags INTERFACE)
-# Contraction is off so that results do not depend on the processor's fused multiply-add.
-target_compile_options(lyr_flags INTERFACE -Wall -Wextra -Wconversion -Wshadow -ffp-contract=off)
+# Contraction is off so that results do not depend on the processor's fused multiply-add. Nobody asks errno about roots,
+# nor the processor's flags about traps: the compiler need not keep them, and results are the same.
+target_compile_options(lyr_flags INTERFACE -Wall -Wextra -Wconversion -Wshadow -ffp-contract=off -fno-math-errno
+                       -fno-trapping-math)
 if(LYR_SANITIZE)
   target_compile_options(lyr_flags INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all)
   target_link_options(lyr_flags INTERFACE -fsanitize=address,undefined)

@@ -81,13 +81,18 @@ Canvas::Canvas(ImageSize size)
       shades_(columns_ * rows_),
       nears_(columns_ * rows_, -std::numeric_limits<float>::infinity()) {}
 
+namespace {
+
+// The first sample whose middle is not below a place, of `count`. A cast cuts off faster than std::ceil() rounds.
+std::size_t first_sample(double at, std::size_t count) {
+    return static_cast<std::size_t>(std::clamp(at + 0.5, 0.0, static_cast<double>(count)));
+}
+
+}  // namespace
+
 void Canvas::fill(std::size_t first, std::size_t step, std::size_t count, const Span& span) {
-    const double from = std::max(0.0, std::ceil(span.low - 0.5)),
-                 to = std::min(static_cast<double>(count) - 1, std::ceil(span.high - 0.5) - 1);
-    if (from > to) return;
-    const auto last = static_cast<std::size_t>(to);
-    for (auto i = static_cast<std::size_t>(from); i <= last; ++i) {
-        const std::size_t at = first + i * step;
+    const std::size_t end = first + first_sample(span.high, count) * step;
+    for (std::size_t at = first + first_sample(span.low, count) * step; at < end; at += step) {
         if (span.near < nears_[at]) continue;
         nears_[at] = span.near;
         shades_[at] = span.shade;
@@ -103,17 +108,16 @@ void Canvas::draw(const Stroke& stroke) {
     const double length = std::abs(way), low = std::min(from, from + way);
     const double reach =
         length > 0 ? stroke.radius * std::sqrt(dx * dx + dy * dy) / length : stroke.radius;
-    const double end = low + length + stroke.radius + (flat ? 0 : stroke.drop);
-    const auto last = static_cast<double>(flat ? columns_ : rows_) - 1;
-    for (double at = std::max(0.0, std::ceil(low - stroke.radius - 0.5));
-         at <= std::min(last, end - 0.5); ++at) {
-        const double on_it = std::clamp(at + 0.5, low, low + length);
-        const double share = length > 0 ? (on_it - from) / way : 0;
+    const double high = low + length + stroke.radius + (flat ? 0 : stroke.drop);
+    const std::size_t count = flat ? columns_ : rows_, end = first_sample(high, count);
+    const double a_way = length > 0 ? 1 / way : 0;
+    for (std::size_t line = first_sample(low - stroke.radius, count); line < end; ++line) {
+        const double on_it = std::clamp(static_cast<double>(line) + 0.5, low, low + length);
+        const double share = (on_it - from) * a_way;
         const double middle = across + rise * share;
         const double near = stroke.from_near + (stroke.to_near - stroke.from_near) * share;
         const Span span{middle - reach, middle + reach + (flat ? stroke.drop : 0),
                         static_cast<float>(near), stroke.shade};
-        const auto line = static_cast<std::size_t>(at);
         if (flat)
             fill(line, columns_, rows_, span);
         else

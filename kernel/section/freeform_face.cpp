@@ -32,17 +32,22 @@ const Containment& FreeformFace::containment() const {
 }
 
 HeightRange FreeformFace::heights() const {
-    return heights_.get([&] { return extended(loops_); });
+    return heights_.get([&] { return extended(loops_, mesh()); });
 }
 
-// A highest point inside the face is a vertex of the mesh, to flat_cell_mm, with no higher neighbour.
 HeightRange FreeformFace::extended(HeightRange range) const {
     range = {std::min(range.bottom_mm, loops_.bottom_mm), std::max(range.top_mm, loops_.top_mm)};
     if (range.bottom_mm <= hull_.bottom_mm && hull_.top_mm <= range.top_mm) return range;
-    const std::vector<MeshVertex>& vertices = mesh().vertices;
+    return extended(range, height_mesh_beyond(std::get<SharedBSplineSurface>(model_[face_].surface),
+                                              range.bottom_mm, range.top_mm));
+}
+
+// A highest point inside the face is a vertex of the mesh, to flat_cell_mm, with no higher neighbour.
+HeightRange FreeformFace::extended(HeightRange range, const HeightMesh& mesh) const {
+    const std::vector<MeshVertex>& vertices = mesh.vertices;
     std::vector<bool> has_higher(vertices.size(), false), has_lower(vertices.size(), false);
     std::vector<bool> used(vertices.size(), false);  // the doubles at a seam are not
-    for (const BorderPiece& piece : mesh().pieces) {
+    for (const BorderPiece& piece : mesh.pieces) {
         const double rise = vertices[piece.to].z_mm - vertices[piece.from].z_mm;
         used[piece.from] = used[piece.to] = true;
         has_higher[piece.from] = has_higher[piece.from] || rise > 0;

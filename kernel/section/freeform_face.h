@@ -31,6 +31,8 @@ public:
     HeightRange extended(HeightRange range) const;
 
 private:
+    HeightRange extended(HeightRange range, const HeightMesh& mesh) const;
+
     const Model& model_;
     FaceId face_;
     const std::vector<double>& vertex_level_mm_;

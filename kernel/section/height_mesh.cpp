@@ -161,4 +161,20 @@ HeightMesh height_mesh(std::shared_ptr<const BSplineSurface> surface) {
     return mesh;
 }
 
+HeightMesh height_mesh_beyond(std::shared_ptr<const BSplineSurface> surface, double bottom_mm,
+                              double top_mm) {
+    HeightMesh mesh;
+    mesh.surface = std::move(surface);
+    mesh.patches = bezier_patches(*mesh.surface).patches;
+    std::erase_if(mesh.patches, [&](const BezierPatch& patch) {
+        return std::all_of(patch.control_points.begin(), patch.control_points.end(),
+                           [&](const Eigen::Vector4d& point) {
+                               return bottom_mm * point.w() <= point.z() &&
+                                      point.z() <= top_mm * point.w();
+                           });
+    });
+    Builder(mesh).build();
+    return mesh;
+}
+
 }  // namespace lyr

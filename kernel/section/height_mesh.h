@@ -50,4 +50,8 @@ struct HeightMesh {
 
 HeightMesh height_mesh(std::shared_ptr<const BSplineSurface> surface);
 
+// The same of those patches alone that may reach out of a range of heights.
+HeightMesh height_mesh_beyond(std::shared_ptr<const BSplineSurface> surface, double bottom_mm,
+                              double top_mm);
+
 }  // namespace lyr

@@ -24,8 +24,8 @@ constexpr double pi = std::numbers::pi;
 constexpr double disc_share = 4;
 constexpr double boundary_share = 2;
 
-// Places beside a segment where the result's boundary is looked for are so far apart, in distances, and no more than so
-// many: what lies between two of them may be lost unseen.
+// Places beside a contour where the result's boundary is looked for are so far apart, in distances (twice that along a
+// segment), and no more than so many a segment: what lies between two of them may be lost unseen.
 constexpr double apart_share = 2;
 constexpr double most_places = 9;
 
@@ -80,6 +80,7 @@ private:
     bool may_be_mitred(const Point2& point) const;
     Fault missing_beside(const Point2& place, const Vector2& towards,
                          std::vector<bool>::reference counted) const;
+    double beside_mm(const BoundaryPiece& piece) const;
     double places_beside(const BoundaryPiece& piece) const;
     Fault missing() const;
 
@@ -202,11 +203,15 @@ Check::Fault Check::missing_beside(const Point2& place, const Vector2& towards,
     return OffsetFault{Kind::incomplete, expected};
 }
 
+// The length of what is parallel to it at the distance.
+double Check::beside_mm(const BoundaryPiece& piece) const {
+    const double turned = outwards_ ? piece.curvature_per_mm : -piece.curvature_per_mm;
+    return piece.length_mm * std::max(0.0, 1 + turned * distance_mm_);
+}
+
 // An odd number, so that the middle is one.
 double Check::places_beside(const BoundaryPiece& piece) const {
-    const double turned = outwards_ ? piece.curvature_per_mm : -piece.curvature_per_mm;
-    const double beside_mm = piece.length_mm * std::max(0.0, 1 + turned * distance_mm_);
-    const double pairs = std::floor(beside_mm / (2 * apart_share * distance_mm_));
+    const double pairs = std::floor(beside_mm(piece) / (2 * apart_share * distance_mm_));
     return std::min(most_places, 1 + 2 * pairs);
 }
 
@@ -216,11 +221,19 @@ Check::Fault Check::missing() const {
     const auto look = [&](const BoundaryPiece& piece, const Point2& place, const Vector2& tangent) {
         if (!found) found = missing_beside(place, across(tangent), counted[piece.contour]);
     };
+    std::uint32_t contour = 0;
+    double unseen_mm = 0;  // beside it, up to here
     for_neighbours(source_.pieces(), [&](const BoundaryPiece& before, const BoundaryPiece& piece) {
-        const double places = places_beside(piece);
-        for (double i = 0.5; i < places; ++i) {
-            const BoundaryPoint place = piece.at(i / places);
-            look(piece, place.point, place.tangent);
+        const bool is_first = &piece == source_.pieces().data() || piece.contour != contour;
+        contour = piece.contour;
+        unseen_mm += beside_mm(piece);
+        if (is_first || unseen_mm >= apart_share * distance_mm_) {
+            unseen_mm = 0;
+            const double places = places_beside(piece);
+            for (double i = 0.5; i < places; ++i) {
+                const BoundaryPoint place = piece.at(i / places);
+                look(piece, place.point, place.tangent);
+            }
         }
         const Vector2 middle = before.end_tangent + piece.start_tangent;
         const double turn = std::abs(cross(before.end_tangent, piece.start_tangent));
