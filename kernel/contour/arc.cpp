@@ -26,9 +26,8 @@ constexpr double flat = 1.0 / 16;
 // atan(x) / x for |x| <= flat.
 double flat_atan_share(double x) {
     const double x2 = x * x;
-    return 1 -
-           x2 * (1.0 / 3 -
-                 x2 * (1.0 / 5 - x2 * (1.0 / 7 - x2 * (1.0 / 9 - x2 * (1.0 / 11 - x2 / 13)))));
+    return 1 - x2 * (1.0 / 3 -
+                     x2 * (1.0 / 5 - x2 * (1.0 / 7 - x2 * (1.0 / 9 - x2 * (1.0 / 11 - x2 / 13)))));
 }
 
 // (x - sin x) without cancellation for small x: its power series to x^9, exact to rounding below 0.25.
@@ -44,7 +43,7 @@ double sweep_rad(const Point2& start, const Segment& segment) {
     if (segment.sagitta_mm == 0) return 0;
     const double c = (segment.end - start).norm(), s2 = 2 * segment.sagitta_mm;
     if (std::abs(s2) <= flat * c) return 4 * s2 / c * flat_atan_share(s2 / c);
-    return 4 * std::atan2(s2, c);
+    return 4 * std::atan(s2 / c);
 }
 
 std::optional<ArcCircle> circle_of(const Point2& start, const Segment& segment) {
@@ -63,7 +62,7 @@ double length_mm(const Point2& start, const Segment& segment) {
         const double t = c == 0 ? 0 : s2 / c;
         return c * (1 + t * t) * flat_atan_share(t);
     }
-    return (c * c / s2 + s2) * std::atan2(s2, c);
+    return (c * c / s2 + s2) * std::atan(s2 / c);
 }
 
 double enclosed_area_mm2(const Point2& start, const Segment& segment) {

@@ -136,7 +136,7 @@ private:
 
     // Whether the wall's sides are near each other along more than is left alone.
     bool is_narrow(std::uint32_t depth) {
-        return narrow_mm2(Boundary(inner(depth)), least_space_share * spacing_mm_) >
+        return narrow_mm2(Boundary(inner(depth)), least_space_share * spacing_mm_, mitre_limit) >
                unseen_mm * unseen_mm;
     }
 
@@ -213,12 +213,10 @@ private:
         set_base(std::move(wall), depth);
     }
 
-    // The parts of a wall whose opposite sides are far enough from each other. Where a disc that takes up all that a wall
-    // needs can be rolled along within it, the wall goes back evenly by the disc's radius.
-    std::vector<Contour> wide_parts(const std::vector<Contour>& wall, double middle_mm) {
+    // The parts of a wall whose opposite sides are far enough from each other.
+    std::vector<Contour> wide_parts(Region wall, double middle_mm) {
         const double half_mm = least_space_share * spacing_mm_ / 2;
         const std::vector<Contour> kernel = shrunk(middle_mm + half_mm);
-        if (is_even(wall, kernel, half_mm) && !is_small(wall) && !has_sharp_tip(wall)) return wall;
         const double margin_mm = cut_margin_share * request_.width_mm;
         const std::vector<Contour> wide =
             offset_by(BoundedRegion(kernel), half_mm + margin_mm, Corner::mitre);
