@@ -35,7 +35,7 @@ constexpr double least_share = 0.6;
 // Besides the longest arc from a place, these shares of it are tried, for the tangents that they end with.
 constexpr std::array shorter_shares = {0.9, 0.75};
 
-// Points of a stretch are looked at in strides first: most arcs that are too long are so by far.
+// Points of a stretch are looked at in strides first: most biarcs that are too long are so by far.
 constexpr std::size_t stride = 4;
 
 // Neighbours that are farther apart than this share of the stretch do not show what arcs do between them: there the cubic
@@ -59,6 +59,14 @@ Point2 between(const CurvePoint& a, const CurvePoint& b, double share) {
            share * rest * length * (rest * a.tangent - share * b.tangent);
 }
 
+// Points one beside the other, for the processor's vectors.
+using Block = Eigen::Array<double, 8, 1>;
+constexpr std::uint32_t block_size = Block::SizeAtCompileTime;
+
+bool all_between(double least, const Block& values, double most) {
+    return least <= values.minCoeff() && values.maxCoeff() <= most;
+}
+
 // Whether points are within a distance of a whole line or circle: offset_mm(), but without its square root.
 class Band {
 public:
@@ -78,6 +86,14 @@ public:
         const double measure_mm =
             2 * cross(offset, carrier_.tangent) + carrier_.curvature_per_mm * offset.squaredNorm();
         return least_mm_ <= measure_mm && measure_mm <= most_mm_;
+    }
+
+    bool has_all(const Block& x, const Block& y) const {
+        const Block along_x = x - carrier_.start.x(), along_y = y - carrier_.start.y();
+        const Block measures_mm =
+            2 * (along_x * carrier_.tangent.y() - along_y * carrier_.tangent.x()) +
+            carrier_.curvature_per_mm * (along_x * along_x + along_y * along_y);
+        return all_between(least_mm_, measures_mm, most_mm_);
     }
 
 private:
@@ -116,7 +132,13 @@ public:
     Search(std::span<const CurvePoint> points, double bound_mm)
         : points_(points),
           bound_mm_(bound_mm),
-          last_(static_cast<std::uint32_t>(points.size() - 1)) {
+          last_(static_cast<std::uint32_t>(points.size() - 1)),
+          x_(points.size()),
+          y_(points.size()) {
+        for (std::uint32_t i = 0; i <= last_; ++i) {
+            x_[i] = point(i).point.x();
+            y_[i] = point(i).point.y();
+        }
         for (std::uint32_t i = 0; i < last_; ++i)
             widest_mm2_ =
                 std::max(widest_mm2_, (point(i + 1).point - point(i).point).squaredNorm());
@@ -203,7 +225,7 @@ private:
             const Segment arc{point(end).point, sagitta_from_tangent(chord, leaving)};
             const Band band({point(start).point, leaving, curvature_per_mm(chord, leaving)},
                             bound_mm_);
-            if (!within(start, end, [&](const Point2& p) { return band.has(p); })) return false;
+            if (!within(start, end, band)) return false;
             reached.push_back(static_cast<std::uint32_t>(places_.size()));
             places_.push_back({end, from, arriving, error, arc, {}});
             return true;
@@ -288,21 +310,59 @@ private:
         places_.push_back({end, from, point(end).tangent, 0, {point(end).point, 0}, {}});
     }
 
+    // Of an arc from one point to another.
+    struct Ends {
+        Point2 origin;
+        Vector2 chord;
+        double least, most;  // of the product with the chord
+
+        bool has_between(const Point2& p) const {
+            const double along = chord.dot(p - origin);
+            return least <= along && along <= most;
+        }
+    };
+    Ends ends_of(std::uint32_t start, std::uint32_t end) const {
+        const Vector2 chord = point(end).point - point(start).point;
+        const double length = chord.norm();
+        return {point(start).point, chord, -length * bound_mm_, length * (length + bound_mm_)};
+    }
+
     // Whether all points are near, and none is before the start or past the end: not even where the curve goes out and
     // comes back.
     template <class IsNear>
     bool within(std::uint32_t start, std::uint32_t end, IsNear is_near) const {
-        const Point2 origin = point(start).point;
-        const Vector2 chord = point(end).point - origin;
-        const double length = chord.norm(), most = length * (length + bound_mm_),
-                     least = -length * bound_mm_;
-        const auto is_beside = [&](const Point2& p) {
-            const double along = chord.dot(p - origin);
-            return least <= along && along <= most && is_near(p);
-        };
+        const Ends ends = ends_of(start, end);
+        const auto is_beside = [&](const Point2& p) { return ends.has_between(p) && is_near(p); };
         for (std::size_t first = stride; first > 0; --first)
             for (std::size_t i = start + first; i < end; i += stride)
                 if (!is_beside(points_[i].point)) return false;
+        return spans_within(start, end, ends.chord, is_beside);
+    }
+
+    bool within(std::uint32_t start, std::uint32_t end, const Band& band) const {
+        const Ends ends = ends_of(start, end);
+        const auto is_beside = [&](const Point2& p) { return ends.has_between(p) && band.has(p); };
+        if (!is_beside(point(start + (end - start) / 2).point)) return false;
+        if (end - start <= block_size) {
+            for (std::uint32_t i = start + 1; i < end; ++i)
+                if (!is_beside(points_[i].point)) return false;
+        }
+        // The last block may look at points again.
+        for (std::uint32_t i = start + 1; end - start > block_size && i < end; i += block_size)
+            if (!block_within(std::min(i, end - block_size), ends, band)) return false;
+        return spans_within(start, end, ends.chord, is_beside);
+    }
+
+    bool block_within(std::uint32_t first, const Ends& ends, const Band& band) const {
+        const Eigen::Map<const Block> x(&x_[first]), y(&y_[first]);
+        const Block along =
+            ends.chord.x() * (x - ends.origin.x()) + ends.chord.y() * (y - ends.origin.y());
+        return all_between(ends.least, along, ends.most) && band.has_all(x, y);
+    }
+
+    template <class IsBeside>
+    bool spans_within(std::uint32_t start, std::uint32_t end, const Vector2& chord,
+                      IsBeside is_beside) const {
         const double wide2 = wide_share * wide_share * chord.squaredNorm();
         if (widest_mm2_ <= wide2) return true;
         if (end == start + 1) return cubic_within(start, is_beside);
@@ -349,6 +409,7 @@ private:
     std::span<const CurvePoint> points_;
     double bound_mm_;
     std::uint32_t last_;
+    std::vector<double> x_, y_;      // of the points
     double widest_mm2_ = 0;          // between neighbours
     std::uint32_t farthest_ = 0;     // of all kept places
     std::uint32_t last_length_ = 8;  // of an arc, in points: where to look first

@@ -12,6 +12,19 @@ HeightRange hull_of(const BSplineSurface& surface) {
     return {low->z(), high->z()};
 }
 
+// One bit for each way along which the height rises: u, v, against u, against v.
+using Ways = std::uint8_t;
+constexpr Ways all_ways = 15;
+
+// Those of which a cell is proof, its border included. At the rim of the surface (no cell) there is none.
+Ways rising_ways(const HeightMesh& mesh, std::int32_t cell) {
+    if (cell < 0) return 0;
+    const MonotoneCell& c = mesh.cells[static_cast<std::size_t>(cell)];
+    if (c.kind == CellKind::graph_over_u) return c.rises_v ? 2 : 8;
+    if (c.kind == CellKind::graph_over_v) return c.rises_u ? 1 : 4;
+    return 0;
+}
+
 }  // namespace
 
 FreeformFace::FreeformFace(const Model& model, FaceId face,
@@ -42,11 +55,13 @@ HeightRange FreeformFace::extended(HeightRange range) const {
                                               range.bottom_mm, range.top_mm));
 }
 
-// A highest point inside the face is a vertex of the mesh, to flat_cell_mm, with no higher neighbour.
+// A highest point inside the face is a vertex of the mesh, to flat_cell_mm, with no higher neighbour. What lies across the
+// pieces tells too: where all cells around a vertex rise the same way, it is none.
 HeightRange FreeformFace::extended(HeightRange range, const HeightMesh& mesh) const {
     const std::vector<MeshVertex>& vertices = mesh.vertices;
     std::vector<bool> has_higher(vertices.size(), false), has_lower(vertices.size(), false);
     std::vector<bool> used(vertices.size(), false);  // the doubles at a seam are not
+    std::vector<Ways> rising(vertices.size(), all_ways);
     for (const BorderPiece& piece : mesh.pieces) {
         const double rise = vertices[piece.to].z_mm - vertices[piece.from].z_mm;
         used[piece.from] = used[piece.to] = true;
@@ -54,12 +69,17 @@ HeightRange FreeformFace::extended(HeightRange range, const HeightMesh& mesh) co
         has_lower[piece.from] = has_lower[piece.from] || rise < 0;
         has_higher[piece.to] = has_higher[piece.to] || rise < 0;
         has_lower[piece.to] = has_lower[piece.to] || rise > 0;
+        for (const std::int32_t cell : {piece.left, piece.right}) {
+            const Ways ways = rising_ways(mesh, cell);
+            rising[piece.from] &= ways;
+            rising[piece.to] &= ways;
+        }
     }
     for (std::size_t v = 0; v < vertices.size(); ++v) {
         const double z = vertices[v].z_mm;
         const bool beyond =
             (z > range.top_mm && !has_higher[v]) || (z < range.bottom_mm && !has_lower[v]);
-        if (!beyond || !used[v]) continue;
+        if (!beyond || !used[v] || rising[v] != 0) continue;
         if (!containment().holds_parameters(vertices[v].uv)) continue;
         range = {std::min(range.bottom_mm, z), std::max(range.top_mm, z)};
     }

@@ -153,9 +153,30 @@ private:
 
 }  // namespace
 
+namespace {
+
+// Where a B-spline may have a corner: knots that are there as often as its degree says.
+std::vector<double> creases_of(const std::vector<double>& knots, int degree) {
+    std::vector<double> creases;
+    const auto stride = static_cast<std::size_t>(degree) - 1;
+    for (std::size_t i = 0; i + stride < knots.size(); ++i)
+        if (knots[i] == knots[i + stride] && (creases.empty() || creases.back() != knots[i]))
+            creases.push_back(knots[i]);
+    return creases;
+}
+
+}  // namespace
+
+bool HeightMesh::is_smooth_at(const Point2& uv) const {
+    return std::find(creases_u.begin(), creases_u.end(), uv.x()) == creases_u.end() &&
+           std::find(creases_v.begin(), creases_v.end(), uv.y()) == creases_v.end();
+}
+
 HeightMesh height_mesh(std::shared_ptr<const BSplineSurface> surface) {
     HeightMesh mesh;
     mesh.surface = std::move(surface);
+    mesh.creases_u = creases_of(mesh.surface->knots_u, mesh.surface->degree_u);
+    mesh.creases_v = creases_of(mesh.surface->knots_v, mesh.surface->degree_v);
     mesh.patches = bezier_patches(*mesh.surface).patches;
     Builder(mesh).build();
     return mesh;

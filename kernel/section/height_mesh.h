@@ -42,10 +42,15 @@ struct HeightMesh {
     std::shared_ptr<const BSplineSurface> surface;
     std::vector<BezierPatch> patches;
     std::vector<QuarticPart> quartic_parts;  // of the patches
+    std::vector<double> creases_u,
+        creases_v;  // parameter lines across which the surface may have an edge
     std::vector<MonotoneCell> cells;
     std::vector<MeshVertex> vertices;
     std::vector<BorderPiece> pieces;
     IntervalIndex pieces_by_height;
+
+    // Whether patches that meet there have the same tangents.
+    bool is_smooth_at(const Point2& uv) const;
 };
 
 HeightMesh height_mesh(std::shared_ptr<const BSplineSurface> surface);

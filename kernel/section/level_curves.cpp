@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <tuple>
 
 #include "kernel/geometry/root.h"
@@ -41,6 +42,13 @@ struct CellCurve {
     CellEnd start, end;
 };
 
+// The end of a cell's curve: that of the next one may begin there.
+struct Reached {
+    const BezierPatch* patch;
+    Point2 uv;
+    CurvePoint at;
+};
+
 class Tracker {
 public:
     Tracker(const HeightMesh& mesh, double z_mm, double allowed_mm)
@@ -64,7 +72,7 @@ private:
     int first_spans(const CellCurve& curve, const CurvePoint& start, double chord_mm) const;
     bool is_corner(const CurvePoint& before, const CurvePoint& at, const Vector2& leaving,
                    const CurvePoint& after) const;
-    void sample(const CellCurve& curve, LevelCurve& out) const;
+    void sample(const CellCurve& curve, LevelCurve& out, std::optional<Reached>& reached) const;
     void refine(const CellCurve& curve, double from, const CurvePoint& start, double to,
                 const CurvePoint& end, int depth, bool settled, LevelCurve& out) const;
     Point2 solve(const CellCurve& curve, double share) const;
@@ -147,10 +155,11 @@ std::vector<LevelCurve> Tracker::follow() {
 
 LevelCurve Tracker::follow_from(std::uint32_t first_curve) {
     LevelCurve result{{}, {}, false, cell_curves_[first_curve].start.uv};
+    std::optional<Reached> reached;
     std::uint32_t next = first_curve;
     while (next != none && !followed_[next]) {
         followed_[next] = true;
-        sample(cell_curves_[next], result);
+        sample(cell_curves_[next], result, reached);
         next = curve_from_[cell_curves_[next].end.crossing];
     }
     result.closed = next == first_curve;
@@ -287,10 +296,15 @@ bool Tracker::is_corner(const CurvePoint& before, const CurvePoint& at, const Ve
     return wrong_end_share * step * angle_between(at.tangent, leaving) > allowed_mm_;
 }
 
-void Tracker::sample(const CellCurve& curve, LevelCurve& out) const {
+void Tracker::sample(const CellCurve& curve, LevelCurve& out,
+                     std::optional<Reached>& reached) const {
     const MonotoneCell& cell = mesh_.cells[static_cast<std::size_t>(curve.cell)];
     const BezierPatch& patch = mesh_.patches[cell.patch];
-    CurvePoint start = point_at(patch, curve.start.uv), end = point_at(patch, curve.end.uv);
+    const bool goes_on = reached && reached->uv == curve.start.uv &&
+                         (reached->patch == &patch || mesh_.is_smooth_at(reached->uv));
+    CurvePoint start = goes_on ? reached->at : point_at(patch, curve.start.uv);
+    CurvePoint end = point_at(patch, curve.end.uv);
+    reached = Reached{&patch, curve.end.uv, end};
     const Vector2 chord = end.point - start.point;
     const double length = chord.norm();
     const int spans = first_spans(curve, start, length);
