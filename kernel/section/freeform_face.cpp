@@ -1,6 +1,9 @@
 #include "kernel/section/freeform_face.h"
 
 #include <algorithm>
+#include <numeric>
+
+#include "kernel/section/face_outline.h"
 
 namespace lyr {
 namespace {
@@ -12,18 +15,22 @@ HeightRange hull_of(const BSplineSurface& surface) {
     return {low->z(), high->z()};
 }
 
-// One bit for each way along which the height rises: u, v, against u, against v.
-using Ways = std::uint8_t;
-constexpr Ways all_ways = 15;
+// The vertices of a mesh in parts that hang together.
+class Parts {
+public:
+    explicit Parts(std::size_t vertices) : next_(vertices) {
+        std::iota(next_.begin(), next_.end(), 0u);
+    }
 
-// Those of which a cell is proof, its border included. At the rim of the surface (no cell) there is none.
-Ways rising_ways(const HeightMesh& mesh, std::int32_t cell) {
-    if (cell < 0) return 0;
-    const MonotoneCell& c = mesh.cells[static_cast<std::size_t>(cell)];
-    if (c.kind == CellKind::graph_over_u) return c.rises_v ? 2 : 8;
-    if (c.kind == CellKind::graph_over_v) return c.rises_u ? 1 : 4;
-    return 0;
-}
+    std::uint32_t of(std::uint32_t vertex) {
+        while (next_[vertex] != vertex) vertex = next_[vertex] = next_[next_[vertex]];
+        return vertex;
+    }
+    void join(std::uint32_t a, std::uint32_t b) { next_[of(a)] = of(b); }
+
+private:
+    std::vector<std::uint32_t> next_;  // on the way to the one that stands for the part
+};
 
 }  // namespace
 
@@ -55,33 +62,37 @@ HeightRange FreeformFace::extended(HeightRange range) const {
                                               range.bottom_mm, range.top_mm));
 }
 
-// A highest point inside the face is a vertex of the mesh, to flat_cell_mm, with no higher neighbour. What lies across the
-// pieces tells too: where all cells around a vertex rise the same way, it is none.
+// What of the surface is above all edges of the face is crossed by none: each part of it that hangs together is in the
+// face as a whole, or out of it. It is out of it where it reaches the surface's rim, but for a pole. Its highest point is a
+// vertex of the mesh, to flat_cell_mm.
 HeightRange FreeformFace::extended(HeightRange range, const HeightMesh& mesh) const {
-    const std::vector<MeshVertex>& vertices = mesh.vertices;
-    std::vector<bool> has_higher(vertices.size(), false), has_lower(vertices.size(), false);
-    std::vector<bool> used(vertices.size(), false);  // the doubles at a seam are not
-    std::vector<Ways> rising(vertices.size(), all_ways);
-    for (const BorderPiece& piece : mesh.pieces) {
-        const double rise = vertices[piece.to].z_mm - vertices[piece.from].z_mm;
-        used[piece.from] = used[piece.to] = true;
-        has_higher[piece.from] = has_higher[piece.from] || rise > 0;
-        has_lower[piece.from] = has_lower[piece.from] || rise < 0;
-        has_higher[piece.to] = has_higher[piece.to] || rise < 0;
-        has_lower[piece.to] = has_lower[piece.to] || rise > 0;
-        for (const std::int32_t cell : {piece.left, piece.right}) {
-            const Ways ways = rising_ways(mesh, cell);
-            rising[piece.from] &= ways;
-            rising[piece.to] &= ways;
+    const bool has_poles = !poles_of(model_[face_].surface).empty();
+    for (const double up : {1.0, -1.0}) {
+        const double border_mm = up > 0 ? range.top_mm : -range.bottom_mm;
+        const auto height_mm = [&](std::uint32_t v) { return up * mesh.vertices[v].z_mm; };
+        Parts parts(mesh.vertices.size());
+        for (const BorderPiece& piece : mesh.pieces)
+            if (height_mm(piece.from) > border_mm && height_mm(piece.to) > border_mm)
+                parts.join(piece.from, piece.to);
+        constexpr std::uint32_t none = ~std::uint32_t{0};
+        std::vector<std::uint32_t> highest(mesh.vertices.size(), none);  // by part
+        std::vector<bool> reaches_rim(mesh.vertices.size(), false);
+        for (const BorderPiece& piece : mesh.pieces) {
+            for (const std::uint32_t vertex : {piece.from, piece.to}) {
+                if (!(height_mm(vertex) > border_mm)) continue;
+                const std::uint32_t part = parts.of(vertex);
+                if (highest[part] == none || height_mm(vertex) > height_mm(highest[part]))
+                    highest[part] = vertex;
+                if (!has_poles && (piece.left < 0 || piece.right < 0)) reaches_rim[part] = true;
+            }
         }
-    }
-    for (std::size_t v = 0; v < vertices.size(); ++v) {
-        const double z = vertices[v].z_mm;
-        const bool beyond =
-            (z > range.top_mm && !has_higher[v]) || (z < range.bottom_mm && !has_lower[v]);
-        if (!beyond || !used[v] || rising[v] != 0) continue;
-        if (!containment().holds_parameters(vertices[v].uv)) continue;
-        range = {std::min(range.bottom_mm, z), std::max(range.top_mm, z)};
+        for (std::uint32_t part = 0; part < highest.size(); ++part) {
+            if (highest[part] == none || reaches_rim[part]) continue;
+            const MeshVertex& top = mesh.vertices[highest[part]];
+            const bool is_beyond = up > 0 ? top.z_mm > range.top_mm : top.z_mm < range.bottom_mm;
+            if (!is_beyond || !containment().holds_parameters(top.uv)) continue;
+            (up > 0 ? range.top_mm : range.bottom_mm) = top.z_mm;
+        }
     }
     return range;
 }
