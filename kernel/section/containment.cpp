@@ -101,6 +101,29 @@ bool is_left_of(const Vector3& pole, const Outline& outline, double sense) {
 // that was found on it, and a vertex on a ray would be met twice at one place. A metre away it is resolution_mm / 100.
 constexpr double ray_offset_rad = 1e-12;
 
+// Outlines are followed on the surface, which takes long: what turns by no more than a step of a circle's outline is one
+// step of any, but no more steps than this together, lest the next foot be too far from the last.
+constexpr double one_step_rad = full_turn_rad / 48;
+constexpr std::size_t most_together = 8;
+
+// Leaves out points after the first of these where the outline hardly turns.
+void thin_out(std::vector<Point3>& points, std::size_t first) {
+    std::size_t kept = first, together = 0;
+    double turn = 0;
+    for (std::size_t i = first + 1; i < points.size(); ++i) {
+        ++together;
+        const bool is_last = i + 1 == points.size();
+        const Vector3 before = points[i] - points[i - 1];
+        const Vector3 after = is_last ? before : Vector3(points[i + 1] - points[i]);
+        turn += std::atan2(before.cross(after).norm(), before.dot(after));
+        if (turn <= one_step_rad && together < most_together && !is_last) continue;
+        points[++kept] = points[i];
+        turn = 0;
+        together = 0;
+    }
+    points.resize(std::min(points.size(), kept + 1));
+}
+
 }  // namespace
 
 Containment::Containment(const Model& model, FaceId id, const std::vector<double>& vertex_level_mm,
@@ -115,7 +138,9 @@ Containment::Containment(const Model& model, FaceId id, const std::vector<double
         const VertexId origin = model.start_of(rest.front());
         for (auto next = rest.begin(); next != rest.end();) {
             const Edge& edge = model[next->edge];
+            const std::size_t first = points.size();
             append_outline(edge, next->reversed, outline_steps(edge), points);
+            if (std::holds_alternative<BSplineCurve>(edge.curve)) thin_out(points, first);
             const VertexId at = model.end_of(*next);
             rest.erase(next);
             if (at == origin) break;

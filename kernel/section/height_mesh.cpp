@@ -84,9 +84,9 @@ private:
                 const double line = wrapped(!along_u, fixed);
                 const double from = along_u ? cell.from_u : cell.from_v;
                 const double to = along_u ? cell.to_u : cell.to_v;
-                for (const double at : {from, to, wrapped(along_u, to)}) {
-                    lines.stops.push_back({line, at});
-                }
+                lines.stops.push_back({line, from});
+                lines.stops.push_back({line, to});
+                if (wrapped(along_u, to) != to) lines.stops.push_back({line, wrapped(along_u, to)});
             }
         }
         std::sort(lines.stops.begin(), lines.stops.end());
