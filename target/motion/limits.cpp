@@ -30,11 +30,21 @@ double requested_mm_s2(const Move& move) {
     return move.acceleration_mm_s2 > 0 ? move.acceleration_mm_s2 : infinity;
 }
 
+struct Direction {
+    double cosine, sine;
+
+    Direction mirrored() const { return {sine, cosine}; }
+};
+
+Direction direction_at(double angle_rad) {
+    return {std::cos(angle_rad), std::sin(angle_rad)};
+}
+
 // Angles of the radius, folded; both within 0..pi/2.
 struct Folded {
-    double low, high;
+    Direction low, high;
 
-    Folded mirrored() const { return {pi / 2 - high, pi / 2 - low}; }
+    Folded mirrored() const { return {high.mirrored(), low.mirrored()}; }
 };
 
 Folded folded_sweep(const Arc& arc) {
@@ -45,22 +55,25 @@ Folded folded_sweep(const Arc& arc) {
         const double in_half_turn = quarters - 2 * std::floor(quarters / 2);
         return std::min(in_half_turn, 2 - in_half_turn) * (pi / 2);
     };
-    Folded folded{std::min(fold(low), fold(high)), std::max(fold(low), fold(high))};
+    Folded folded{direction_at(std::min(fold(low), fold(high))),
+                  direction_at(std::max(fold(low), fold(high)))};
     // An axis is passed: even quarters are those of x, odd ones of y.
     const auto passes = [=](double first) {
         return first + 2 * std::ceil((low - first) / 2) <= high;
     };
-    if (passes(0)) folded.low = 0;
-    if (passes(1)) folded.high = pi / 2;
+    if (passes(0)) folded.low = {1, 0};
+    if (passes(1)) folded.high = {0, 1};
     return folded;
 }
 
 // The largest A with A sin(p) + C cos(p) <= limit for all p of the range: what is left in the
 // direction of motion when C is needed along the radius. The tightest p has cos(p) = C / limit.
 double left_over(double needed, double limit, const Folded& range) {
-    const double tightest =
-        std::clamp(std::acos(std::min(1.0, needed / limit)), range.low, range.high);
-    return ratio(std::max(0.0, limit - needed * std::cos(tightest)), std::sin(tightest));
+    const double cosine = needed / limit;
+    Direction tightest{cosine, std::sqrt(std::max(0.0, 1 - cosine * cosine))};
+    if (cosine >= range.low.cosine) tightest = range.low;
+    if (cosine <= range.high.cosine) tightest = range.high;
+    return ratio(std::max(0.0, limit - needed * tightest.cosine), tightest.sine);
 }
 
 // Of the two axes in whose plane an arc lies.
@@ -69,8 +82,8 @@ struct Plane {
     Folded radius;  // seen from x
 
     double speed_mm_s() const {
-        return std::min(ratio(x.speed_mm_s, std::sin(radius.high)),
-                        ratio(y.speed_mm_s, std::cos(radius.low)));
+        return std::min(ratio(x.speed_mm_s, radius.high.sine),
+                        ratio(y.speed_mm_s, radius.low.cosine));
     }
     double weaker_mm_s2() const { return std::min(x.acceleration_mm_s2, y.acceleration_mm_s2); }
     double tangential_mm_s2(double centripetal) const {
