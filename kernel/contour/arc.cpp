@@ -23,18 +23,14 @@ Vector2 rotated(const Vector2& v, double angle) {
 // Of 2 s / c, below which the series are exact to rounding.
 constexpr double flat = 1.0 / 16;
 
-// atan(x) / x for |x| <= flat.
-double flat_atan_share(double x) {
-    const double x2 = x * x;
-    return 1 - x2 * (1.0 / 3 -
-                     x2 * (1.0 / 5 - x2 * (1.0 / 7 - x2 * (1.0 / 9 - x2 * (1.0 / 11 - x2 / 13)))));
+// 1 - atan(x) / x over x^2, for |x| <= flat.
+double flat_atan_rest(double x2) {
+    return 1.0 / 3 - x2 * (1.0 / 5 - x2 * (1.0 / 7 - x2 * (1.0 / 9 - x2 * (1.0 / 11 - x2 / 13))));
 }
 
-// (x - sin x) without cancellation for small x: its power series to x^9, exact to rounding below 0.25.
-double x_minus_sin(double x) {
-    if (std::abs(x) > 0.25) return x - std::sin(x);
-    const double x2 = x * x;
-    return x * x2 / 6 * (1 - x2 / 20 * (1 - x2 / 42 * (1 - x2 / 72 * (1 - x2 / 110))));
+// atan(x) / x for |x| <= flat.
+double flat_atan_share(double x) {
+    return 1 - x * x * flat_atan_rest(x * x);
 }
 
 }  // namespace
@@ -65,12 +61,16 @@ double length_mm(const Point2& start, const Segment& segment) {
     return (c * c / s2 + s2) * std::atan(s2 / c);
 }
 
+// Half the square of the radius times sweep - sin(sweep); for a flat arc without what cancels.
 double enclosed_area_mm2(const Point2& start, const Segment& segment) {
-    const double sweep = sweep_rad(start, segment);
-    if (sweep == 0) return 0;
-    const double chord = (segment.end - start).norm();
-    const double radius = (chord * chord / 4 / segment.sagitta_mm + segment.sagitta_mm) / 2;
-    return radius * radius * x_minus_sin(sweep) / 2;
+    const double c = (segment.end - start).norm(), s2 = 2 * segment.sagitta_mm;
+    if (s2 == 0) return 0;
+    if (std::abs(s2) <= flat * c) {
+        const double t2 = s2 / c * (s2 / c);
+        return c * s2 / 8 * (3 + t2 - flat_atan_rest(t2) * (1 + t2) * (1 + t2));
+    }
+    const double radius = (c * c / s2 + s2) / 4, sweep = 4 * std::atan(s2 / c);
+    return radius * radius * (sweep - std::sin(sweep)) / 2;
 }
 
 namespace {

@@ -62,12 +62,14 @@ OffsetResult settled(const RegionResult& first, const BoundedRegion& region,
 }
 
 OffsetResult offset(const BoundedRegion& region, const OffsetRequest& request) {
-    const std::vector<Contour> given(region.contours.begin(), region.contours.end());
+    const auto given = [&] {
+        return std::vector<Contour>(region.contours.begin(), region.contours.end());
+    };
     if (!std::isfinite(request.distance_mm) || !(request.allowed_mm > 0) ||
-        !std::all_of(given.begin(), given.end(), region::is_finite)) {
-        return {.contours = given, .unresolved = OffsetFault{OffsetFault::Kind::input}};
+        !std::all_of(region.contours.begin(), region.contours.end(), region::is_finite)) {
+        return {.contours = given(), .unresolved = OffsetFault{OffsetFault::Kind::input}};
     }
-    if (request.distance_mm == 0) return {.contours = given};
+    if (request.distance_mm == 0) return {.contours = given()};
     if (auto result = trimmed(region, request)) return std::move(*result);
     const RegionResult first = cleaned(offset_curves(region.contours, request),
                                        region_share * request.allowed_mm, request.allowed_mm);
