@@ -176,13 +176,14 @@ IsoLine::IsoLine(const BezierPatch& patch, bool along_u, double fixed)
     const auto across = static_cast<std::size_t>(along_u ? patch.degree_v : patch.degree_u);
     bernstein_basis(across, (fixed - across_from) / (across_to - across_from), basis);
     const auto columns = static_cast<std::size_t>(patch.degree_v) + 1;
+    const std::size_t stride = along_u ? columns : 1, across_stride = along_u ? 1 : columns;
     for (std::size_t i = 0; i <= static_cast<std::size_t>(degree_); ++i) {
-        z_[i] = w_[i] = 0;
-        for (std::size_t k = 0; k <= across; ++k) {
-            const auto& control = patch.control_points[along_u ? i * columns + k : k * columns + i];
-            z_[i] += basis[k] * control.z();
-            w_[i] += basis[k] * control.w();
-        }
+        Eigen::Vector2d zw = Eigen::Vector2d::Zero();
+        const Eigen::Vector4d* control = &patch.control_points[i * stride];
+        for (std::size_t k = 0; k <= across; ++k, control += across_stride)
+            zw += basis[k] * control->tail<2>();
+        z_[i] = zw.x();
+        w_[i] = zw.y();
     }
 }
 
