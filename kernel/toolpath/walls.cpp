@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "kernel/toolpath/clearance.h"
 #include "kernel/toolpath/fitted_walls.h"
@@ -59,10 +60,10 @@ public:
             // Further in there is nothing either.
             if (inner(depth).empty()) return std::move(walls_);
             add(inner(depth), depth);
-            if (request_.gap_fill && has_strip(inner(depth), most_apart_mm())) fit(depth);
+            if (loses_strip(depth)) fit(depth);
         }
         walls_.inside = inner(request_.count);
-        if (request_.gap_fill && request_.count > 0) give_strips_to_gaps();
+        if (request_.gap_fill && request_.count > 0) fill_strips();
         return std::move(walls_);
     }
 
@@ -206,33 +207,50 @@ private:
     double most_apart_mm() const { return spacing_mm_ + request_.min_gap_mm; }
 
     // The width of a strip is twice its area over the length of its boundary, that of anything else is more.
+    static bool is_strip(double area_mm2, double length_mm, double width_mm) {
+        return 2 * area_mm2 <= width_mm * length_mm;
+    }
+
     static bool is_strip(Region part, double width_mm) {
-        return 2 * area_mm2(part) <= width_mm * lyr::length_mm(part);
+        return is_strip(area_mm2(part), lyr::length_mm(part), width_mm);
     }
 
-    // Whether all of the region is one, or a part of it.
+    // Whether a part of the region is one. Which part a hole is in is only asked where it matters.
     static bool has_strip(Region region, double width_mm) {
-        if (region.empty() || is_strip(region, width_mm)) return !region.empty();
-        const auto is_outer = [](const Contour& contour) { return lyr::area_mm2(contour) > 0; };
-        const auto outer =
-            static_cast<std::size_t>(std::count_if(region.begin(), region.end(), is_outer));
-        if (outer < 2) return false;
-        const auto is_narrow = [&](Region part) { return is_strip(part, width_mm); };
-        if (outer == region.size())
-            return std::any_of(region.begin(), region.end(), [&](const Contour& contour) {
-                return is_narrow({&contour, 1});
-            });
+        double holes_mm2 = 0, holes_mm = 0;
+        std::vector<std::pair<double, double>> outer;  // areas and lengths
+        for (const Contour& contour : region) {
+            const double area = lyr::area_mm2(contour), length = lyr::length_mm(contour);
+            if (area > 0) {
+                outer.push_back({area, length});
+            } else {
+                holes_mm2 -= area;
+                holes_mm += length;
+            }
+        }
+        const bool may_be = std::any_of(outer.begin(), outer.end(), [&](const auto& part) {
+            return is_strip(part.first - holes_mm2, part.second + holes_mm, width_mm);
+        });
+        if (!may_be || outer.size() == 1 || outer.size() == region.size()) return may_be;
         const auto parts = parts_of(region);
-        return std::any_of(parts.begin(), parts.end(), is_narrow);
+        return std::any_of(parts.begin(), parts.end(),
+                           [&](const auto& part) { return is_strip(part, width_mm); });
     }
 
-    // Of what the innermost walls leave, strips that are no wider than a line.
-    void give_strips_to_gaps() {
+    // Whether a part of the wall is but two walls side by side, and nothing is further in.
+    bool loses_strip(std::uint32_t depth) {
+        return request_.gap_fill && inner(depth + 1).size() < inner(depth).size() &&
+               has_strip(inner(depth), most_apart_mm());
+    }
+
+    // What the innermost walls leave and is no wider than a line: these are made wider, or it is a gap.
+    void fill_strips() {
         if (!has_strip(walls_.inside, spacing_mm_)) return;
         std::vector<Contour> rest;
         for (const std::vector<Contour>& part : parts_of(walls_.inside)) {
-            const bool is_gap = is_strip(part, spacing_mm_) && !is_strip(part, request_.min_gap_mm);
-            auto& list = is_gap ? walls_.gaps : rest;
+            const bool is_fitted = is_strip(part, request_.min_gap_mm);
+            if (is_fitted) fit(request_.count - 1);
+            auto& list = is_strip(part, spacing_mm_) && !is_fitted ? walls_.gaps : rest;
             list.insert(list.end(), part.begin(), part.end());
         }
         walls_.inside = std::move(rest);
