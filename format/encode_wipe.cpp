@@ -41,6 +41,7 @@ std::vector<LayerEncoder::Implementation::Wiped> LayerEncoder::Implementation::r
 void LayerEncoder::Implementation::wipe(std::span<const WipePiece> pieces, double depth_mm) {
     if (!checked(depth_mm, scale::filament, "a retraction")) return;
     const std::vector<Wiped> all = rounded(pieces);
+    if (all.empty()) return retract_to(depth_mm);
     double way = 0, done = 0;
     for (const Wiped& piece : all) way += piece.length;
     const double begin_mm = depth_mm_;

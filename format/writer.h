@@ -114,7 +114,7 @@ public:
     void retract();  // to LayerState::retract_length_mm
     void retract_to(double depth_mm);
     void unretract();
-    // Draws the filament back to a depth on the way along the pieces.
+    // Draws the filament back to a depth on the way along the pieces, or at once if they have no length.
     void wipe(std::span<const WipePiece> pieces, double depth_mm);
     void temperature(Heater heater, double target_c, bool wait);
     void fan(std::uint32_t fan, double duty);

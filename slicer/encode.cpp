@@ -227,13 +227,13 @@ private:
         retracted_ = true;
         const Path wipe = std::move(wipe_);
         wipe_.segments.clear();
-        if (!wipe.segments.empty()) {
-            const double before_mm = depth_before_wipe_mm(wipe, profile_);
-            if (before_mm > 0) encoder_.retract_to(before_mm);
-            encoder_.wipe(wipe_pieces(wipe, wipe_shift_), profile_.travel.retract_length_mm);
+        if (wipe.segments.empty()) {
+            encoder_.retract();
+            return std::nullopt;
         }
-        encoder_.retract();
-        if (wipe.segments.empty()) return std::nullopt;
+        const double before_mm = depth_before_wipe_mm(wipe, profile_);
+        if (before_mm > 0) encoder_.retract_to(before_mm);
+        encoder_.wipe(wipe_pieces(wipe, wipe_shift_), profile_.travel.retract_length_mm);
         return wipe.segments.back().end + wipe_shift_ - shift_;
     }
 

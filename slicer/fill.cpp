@@ -103,6 +103,7 @@ public:
                                           .allowed_mm = allowed_mm_},
                                          joints);
         fill.unresolved += lines.unresolved;
+        if (role == format::Role::thin_wall) fill.thin_left_out_mm2 += lines.left_out_mm2;
         for (Strand& strand : lines.strands) {
             strand.width_mm += 2 * flank_mm;
             for (double& width : strand.widths_mm) width += 2 * flank_mm;

@@ -26,8 +26,9 @@ struct LayerFill {
     std::vector<Piece> pieces{};
     std::size_t support =
         0;  // so many of the pieces, the first ones: before the part, from support or raft
-    bool asks_sparse = false;  // there is room for sparse fill, and the profile asks for it
-    bool is_unheld = false;    // solid fill lies on nothing: a bridge inside that no side holds
+    bool asks_sparse = false;      // there is room for sparse fill, and the profile asks for it
+    bool is_unheld = false;        // solid fill lies on nothing: a bridge inside that no side holds
+    double thin_left_out_mm2 = 0;  // of the thin parts, what no strand fits into
     std::size_t unresolved = 0;
 };
 

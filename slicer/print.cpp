@@ -1,6 +1,7 @@
 // The print: the model is put on the bed; its layers are cut and get their walls, then their seams, then fill and order.
 // Layers are made on several threads and taken in order.
 
+#include <algorithm>
 #include <atomic>
 #include <cstdio>
 #include <optional>
@@ -13,9 +14,11 @@
 #include "kernel/region/curve.h"
 #include "slicer/adaptive.h"
 #include "slicer/adhesion.h"
+#include "slicer/air_below.h"
 #include "slicer/bounds.h"
 #include "slicer/encode.h"
 #include "slicer/layers.h"
+#include "slicer/left_out.h"
 #include "slicer/plate.h"
 #include "slicer/raft.h"
 #include "slicer/slicer.h"
@@ -58,38 +61,6 @@ Status check_size(const Eigen::AlignedBox3d& box, const profile::Layer& layer) {
 
 bool is_empty(const Walls& walls) {
     return walls.strands.empty() && walls.inside.empty() && walls.thin.empty();
-}
-
-// What is so thin that no line is printed for it: nothing, or something at least.
-Status check_thin_parts(std::span<const OutlinedLayer> layers, std::span<const LayerSpan> spans,
-                        const profile::Perimeters& perimeters, Diagnostics& diagnostics) {
-    // Less than a square of this edge in a layer is the tip of a corner.
-    constexpr double tip_mm = 0.25;
-    std::size_t count = 0, most = 0;
-    for (std::size_t i = 0; i < layers.size(); ++i) {
-        if (layers[i].walls.too_thin_mm2 <= tip_mm * tip_mm) continue;
-        ++count;
-        if (layers[i].walls.too_thin_mm2 > layers[most].walls.too_thin_mm2) most = i;
-    }
-    const std::string what = perimeters.thin_walls
-                                 ? "parts thinner than " + shortest(perimeters.min_width_mm) +
-                                       " mm (perimeters.min_width)"
-                                 : "parts that no wall goes around (perimeters.thin_walls is off)";
-    if (std::all_of(layers.begin(), layers.end(), [](const auto& l) { return is_empty(l.walls); }))
-        return Diagnostic{Severity::error,
-                          ExitStatus::geometry,
-                          "nothing to print: no line fits into the part (perimeters.width is " +
-                              shortest(perimeters.width_mm) + " mm, perimeters.thin_walls " +
-                              (perimeters.thin_walls ? "on)" : "off)"),
-                          {}};
-    if (count == 0) return Done{};
-    char area[64];
-    std::snprintf(area, sizeof area, "; most here, %.3g mm2", layers[most].walls.too_thin_mm2);
-    diagnostics.push_back({Severity::warning,
-                           ExitStatus::geometry,
-                           what + " are left out in " + counted(count, "layer") + area,
-                           {.layer = static_cast<int>(most + 1), .z_mm = spans[most].middle_mm()}});
-    return Done{};
 }
 
 void warn_of_no_wipe(const profile::Travel& travel, Diagnostics& diagnostics) {
@@ -273,13 +244,16 @@ Result<Summary> print(Model model, const std::string& source_name, const std::st
     prepare(cutter, placed.faces.size(), spans, thread_count(options));
     const auto layers = outlined(cutter, spans, options, progress, summary, diagnostics);
     if (!layers) return layers.error();
-    if (Status checked = check_thin_parts(*layers, spans, options.profile.perimeters, diagnostics);
-        !checked)
-        return checked.error();
+    if (std::all_of(layers->begin(), layers->end(),
+                    [](const auto& l) { return is_empty(l.walls); }))
+        return nothing_to_print(options.profile.perimeters);
     SupportPlan support(*layers, spans, raft_layers(options.profile));
     if (options.profile.support.kind != profile::SupportKind::none) {
         support.find_overhangs(placed, cutter, *blocked, options);
         support.find_areas(options, diagnostics);
+    } else {
+        warn_of_air_below(*layers, spans, raft_layers(options.profile), placed, cutter, options,
+                          diagnostics);
     }
     const auto printed_box = with_support(summary.box, support, spans.size(), options.profile);
     const auto plate = lay_out(printed_box, options.profile);

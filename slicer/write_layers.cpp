@@ -12,6 +12,7 @@
 #include "slicer/encode.h"
 #include "slicer/fill_report.h"
 #include "slicer/layers.h"
+#include "slicer/left_out.h"
 #include "slicer/print_fill.h"
 #include "slicer/raft.h"
 
@@ -62,6 +63,7 @@ struct PlannedLayer {
 
 struct TimedLayer {
     FillNotes notes{};
+    LeftOut left_out{};
     std::optional<format::EncodedLayer> encoded{};
     LayerEstimate estimate{};
     std::optional<Diagnostic> error{};
@@ -160,6 +162,7 @@ struct Sink {
     TimedWriter timed;
     const Progress& progress;
     FillReport report{};
+    LeftOutReport left_out{};
     std::optional<Diagnostic> failed{};
 
     bool take(std::size_t i, TimedLayer made, std::size_t count) {
@@ -190,10 +193,12 @@ void write_by_layer(const Job& job, Sink& sink, Diagnostics& diagnostics) {
             const PlannedLayer layer = planned(i, job);
             TimedLayer made = encoded(i, job, layer, i % 2 == 0 ? to : fro, i == 0, false);
             made.notes = notes_of(layer.fill);
+            made.left_out = left_out_of(job.in.layers[i], layer.fill);
             return made;
         },
         [&](std::size_t i, TimedLayer made) {
             sink.report.add(made.notes, place_of(i, job), diagnostics);
+            sink.left_out.add(made.left_out, i);
             return sink.take(i, std::move(made), job.in.layers.size());
         });
 }
@@ -206,6 +211,7 @@ void write_in_sequence(const Job& job, Sink& sink, Diagnostics& diagnostics) {
         [&](std::size_t i) { return planned(i, job); },
         [&](std::size_t i, PlannedLayer made) {
             sink.report.add(notes_of(made.fill), place_of(i, job), diagnostics);
+            sink.left_out.add(left_out_of(job.in.layers[i], made.fill), i);
             layers.push_back(std::move(made));
             return true;
         });
@@ -237,6 +243,10 @@ Result<Estimate> write_layers(const LayersToWrite& layers, format::Writer& write
     }
     if (sink.failed) return *sink.failed;
     sink.report.finish(layers.options.profile.infill, diagnostics);
+    if (Status printed =
+            sink.left_out.finish(layers.layers, layers.spans, layers.options, diagnostics);
+        !printed)
+        return printed.error();
     return sink.timed.estimate();
 }
 

@@ -9,9 +9,12 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "kernel/toolpath/clearance.h"
+#include "kernel/toolpath/fitted_walls.h"
 #include "kernel/toolpath/infill.h"
+#include "kernel/toolpath/islands.h"
 #include "kernel/toolpath/strip_area.h"
 
 namespace lyr {
@@ -51,10 +54,16 @@ public:
         if (!request_.thin_walls && request_.count > 0 && !base_.empty())
             walls_.left_out_mm2 = walls_.too_thin_mm2 = std::max(0.0, unreached_mm2(base_, 0));
         for (std::uint32_t depth = 0; depth < request_.count && !base_.empty(); ++depth) {
+            leaves_gap_ = false;
             if (!is_whole(depth)) separate_narrow(depth);
+            if (leaves_gap_ && depth > 0) fit(depth - 1);
+            // Further in there is nothing either.
+            if (inner(depth).empty()) return std::move(walls_);
             add(inner(depth), depth);
+            if (loses_strip(depth)) fit(depth);
         }
         walls_.inside = inner(request_.count);
+        if (request_.gap_fill && request_.count > 0) fill_strips();
         return std::move(walls_);
     }
 
@@ -194,6 +203,72 @@ private:
         }
     }
 
+    // How far apart opposite walls may be that have no line between them.
+    double most_apart_mm() const { return spacing_mm_ + request_.min_gap_mm; }
+
+    // The width of a strip is twice its area over the length of its boundary, that of anything else is more.
+    static bool is_strip(double area_mm2, double length_mm, double width_mm) {
+        return 2 * area_mm2 <= width_mm * length_mm;
+    }
+
+    static bool is_strip(Region part, double width_mm) {
+        return is_strip(area_mm2(part), lyr::length_mm(part), width_mm);
+    }
+
+    // Whether a part of the region is one. Which part a hole is in is only asked where it matters.
+    static bool has_strip(Region region, double width_mm) {
+        double holes_mm2 = 0, holes_mm = 0;
+        std::vector<std::pair<double, double>> outer;  // areas and lengths
+        for (const Contour& contour : region) {
+            const double area = lyr::area_mm2(contour), length = lyr::length_mm(contour);
+            if (area > 0) {
+                outer.push_back({area, length});
+            } else {
+                holes_mm2 -= area;
+                holes_mm += length;
+            }
+        }
+        const bool may_be = std::any_of(outer.begin(), outer.end(), [&](const auto& part) {
+            return is_strip(part.first - holes_mm2, part.second + holes_mm, width_mm);
+        });
+        if (!may_be || outer.size() == 1 || outer.size() == region.size()) return may_be;
+        const auto parts = parts_of(region);
+        return std::any_of(parts.begin(), parts.end(),
+                           [&](const auto& part) { return is_strip(part, width_mm); });
+    }
+
+    // Whether a part of the wall is but two walls side by side, and nothing is further in.
+    bool loses_strip(std::uint32_t depth) {
+        return request_.gap_fill && inner(depth + 1).size() < inner(depth).size() &&
+               has_strip(inner(depth), most_apart_mm());
+    }
+
+    // What the innermost walls leave and is no wider than a line: these are made wider, or it is a gap.
+    void fill_strips() {
+        if (!has_strip(walls_.inside, spacing_mm_)) return;
+        std::vector<Contour> rest;
+        for (const std::vector<Contour>& part : parts_of(walls_.inside)) {
+            const bool is_fitted = is_strip(part, request_.min_gap_mm);
+            if (is_fitted) fit(request_.count - 1);
+            auto& list = is_strip(part, spacing_mm_) && !is_fitted ? walls_.gaps : rest;
+            list.insert(list.end(), part.begin(), part.end());
+        }
+        walls_.inside = std::move(rest);
+    }
+
+    void fit(std::uint32_t depth) {
+        if (fitted_ > depth) return;
+        fitted_ = depth + 1;
+        const auto first = std::lower_bound(walls_.depths.begin(), walls_.depths.end(), depth);
+        const auto last = std::upper_bound(first, walls_.depths.end(), depth);
+        fit_side_by_side(std::span(walls_.strands)
+                             .subspan(static_cast<std::size_t>(first - walls_.depths.begin()),
+                                      static_cast<std::size_t>(last - first)),
+                         {.spacing_mm = spacing_mm_,
+                          .least_mm = least_space_share * spacing_mm_,
+                          .greatest_mm = most_apart_mm()});
+    }
+
     // Takes off a wall where its opposite sides are too near each other, and lists what it does not cover.
     void separate_narrow(std::uint32_t depth) {
         const std::vector<Contour> outside = outer(depth);
@@ -238,6 +313,7 @@ private:
             opened.empty() ? opened : operated(opened, rest, Operation::intersect);
         const double left_out_mm2 = area_mm2(rest) - area_mm2(narrow);
         walls_.left_out_mm2 += left_out_mm2;
+        leaves_gap_ = left_out_mm2 > unseen_mm * unseen_mm;
         if (depth == 0)
             walls_.too_thin_mm2 += left_out_mm2 > unseen_mm * unseen_mm
                                        ? beyond_mm2(rest, covered) - beyond_mm2(narrow, covered)
@@ -272,6 +348,8 @@ private:
     double base_mm_ = 0;
     std::optional<BoundedRegion> bounded_;
     double spacing_mm_;
+    bool leaves_gap_ = false;   // beside the wall that is made: something too narrow for a line
+    std::uint32_t fitted_ = 0;  // the walls outside of this depth need not be fitted again
     std::vector<std::optional<std::vector<Contour>>> inner_;  // by depth
     Walls walls_;
 };

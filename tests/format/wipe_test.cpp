@@ -115,7 +115,7 @@ TEST_CASE("wipe: a long one comes in several operations, drawn back evenly over 
     CHECK(all<Travel>(reading).back().from == Point{10000, 0, 0});
 }
 
-TEST_CASE("wipe: one that ends where it began needs no travel, one of no length is none") {
+TEST_CASE("wipe: one that ends where it began needs no travel, one of no length is a retraction") {
     const test::Reading reading = reading_of([](LayerEncoder& layer) {
         layer.circle(5, 0, true);
         const WipePiece turn[] = {{10, 0, 5}, {0, 0, 5}};
@@ -124,10 +124,14 @@ TEST_CASE("wipe: one that ends where it began needs no travel, one of no length 
         layer.line_to(0, 5);
         const WipePiece none[] = {{0, 5.0004, 0}};
         layer.wipe(none, 0.8);
+        layer.unretract();
         layer.line_to(0, 9);
     });
     CHECK(!reading.error);
     CHECK(all<Wipe>(reading).size() == 2);
+    const auto retractions = all<Retract>(reading);
+    REQUIRE(retractions.size() == 3);
+    CHECK(retractions[1].depth_mm == 0.8);
     CHECK(all<Line>(reading).size() == 2);
 }
 

@@ -61,13 +61,17 @@ std::string bytes_of(const std::string& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-Summary printed(const Model& model, const std::string& lyr, const Options& options = {}) {
+// A block that stands on a corner or leans far out is warned of.
+enum class Stands { flat, askew };
+
+Summary printed(const Model& model, const std::string& lyr, const Options& options = {},
+                Stands stands = Stands::flat) {
     Diagnostics diagnostics;
     const auto summary = print(
         model, "solids", lyr, lyr + ".jsonl", options, [](const char*, std::size_t, std::size_t) {},
         diagnostics);
     REQUIRE(summary);
-    CHECK(diagnostics.empty());
+    if (stands == Stands::flat) CHECK(diagnostics.empty());
     return *summary;
 }
 
@@ -298,9 +302,10 @@ TEST_CASE("slicer 7: lying askew, solids that share a wall are one as well") {
     for (const Vector3& up : {Vector3(0.3, 0.5, 0.8), Vector3(1, 2, 3), Vector3(0, 0.1, 1)}) {
         const Model block = box(20, 10, height_mm);
         const auto turned = [&](const Model& model) { return transformed(model, turned_up(up)); };
-        const Summary apart = printed(turned(together({at(block, -10, 0), at(block, 10, 0)})), lyr);
+        const Summary apart = printed(turned(together({at(block, -10, 0), at(block, 10, 0)})), lyr,
+                                      {}, Stands::askew);
         const auto areas = wall_areas(lyr);
-        const Summary whole = printed(turned(box(40, 10, height_mm)), lyr);
+        const Summary whole = printed(turned(box(40, 10, height_mm)), lyr, {}, Stands::askew);
         const auto expected = wall_areas(lyr);
         CHECK(apart.layers == whole.layers);
         CHECK(apart.contours == whole.contours);
