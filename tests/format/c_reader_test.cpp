@@ -185,20 +185,19 @@ TEST_CASE("reader: the widest arc is told from one that is wider by a quantum, h
         CHECK_FALSE(verdict(100, 100, sagitta));
 }
 
-TEST_CASE(
-    "C reader 3: a buffer that a block does not fit is said so, a smaller one does for the rest") {
+TEST_CASE("C reader 3: a buffer that a payload does not fit is said so, one that it fits does") {
     const FileBytes file = test::small_file();
     std::size_t longest = 0;
     for (const test::Block& block : test::split(file))
-        if (block.type < 0x80)
-            longest = std::max(longest, block.payload.size() + block_frame_bytes);
-    for (const std::size_t size : {std::size_t{16}, longest - 1, longest, longest + 100}) {
+        if (block.type < 0x80) longest = std::max(longest, block.payload.size());
+    for (const std::size_t size : {std::size_t{LYR_LEAST_BUFFER} - 1, longest - 1, longest,
+                                   longest + 100, buffer_bytes}) {
         test::Memory memory{file};
         test::CReader c(memory, size);
         c.open();
         while (lyr_next(&c.reader, &c.operation)) {
         }
-        CHECK(c.reader.error.status == (size < longest ? LYR_TOO_LONG : LYR_END));
+        CHECK(c.reader.status == (size < longest ? LYR_TOO_LONG : LYR_END));
     }
 }
 
@@ -216,17 +215,17 @@ TEST_CASE("C reader: it starts at any layer, and goes back") {
         CHECK(c.operation.number == layer);
         std::uint64_t left = 1;
         while (lyr_next(&c.reader, &c.operation)) ++left;
-        CHECK(c.reader.error.status == LYR_END);
+        CHECK(c.reader.status == LYR_END);
         CHECK(left ==
               std::accumulate(operations.begin() + layer, operations.end(), std::uint64_t{0}));
     }
     CHECK_FALSE(lyr_seek_layer(&c.reader, 3));
-    CHECK(c.reader.error.status == LYR_NO_SUCH_LAYER);
+    CHECK(c.reader.status == LYR_NO_SUCH_LAYER);
     CHECK(lyr_seek_layer(&c.reader, 0));
     memory.bytes = memory.bytes.first(file.size() - 1);
     c.reader.source.size = file.size() - 1;
     CHECK_FALSE(lyr_seek_layer(&c.reader, 0));
-    CHECK(c.reader.error.status == LYR_CUT_SHORT);
+    CHECK(c.reader.status == LYR_CUT_SHORT);
 }
 
 TEST_CASE("C reader: a wipe is given out again without touching the source") {
@@ -261,38 +260,33 @@ TEST_CASE("C reader: a wipe is given out again without touching the source") {
 TEST_CASE("C reader: metadata, configuration and thumbnails are handed on") {
     struct Kept {
         test::Memory memory;
-        std::string metadata;
         std::vector<std::pair<int, std::string>> extras;
         bool open = false;
     };
     const FileBytes file = test::small_file();
-    Kept kept{{file}, "", {}};
+    Kept kept{{file}, {}};
     lyr_source source = kept.memory.source();
     source.user = &kept;
     source.read = [](void* user, std::uint8_t* out, std::uint32_t count) {
         return test::Memory::read(&static_cast<Kept*>(user)->memory, out, std::min(count, 50u));
     };
-    source.metadata = [](void* user, const char* key, std::size_t key_size, const char* value,
-                         std::size_t size) {
-        static_cast<Kept*>(user)->metadata +=
-            std::string(key, key_size) + ':' + std::string(value, size) + '\n';
-    };
-    source.extra = [](void* user, std::uint8_t type, const std::uint8_t* bytes, std::size_t count,
-                      std::size_t left) {
+    source.extra = [](void* user, std::uint8_t type, const std::uint8_t* bytes, std::uint32_t count,
+                      std::uint32_t left) {
         auto& out = *static_cast<Kept*>(user);
         if (!out.open) out.extras.push_back({type, ""});
-        if (count > 0) out.extras.back().second.append(reinterpret_cast<const char*>(bytes), count);
+        out.extras.back().second.append(reinterpret_cast<const char*>(bytes), count);
         out.open = left > 0;
     };
     std::vector<std::byte> buffer(400);
     lyr_reader reader;
-    REQUIRE(lyr_open(&reader, &source, buffer.data(), buffer.size()));
-    CHECK(kept.metadata.starts_with("source:part.step\n"));
-    CHECK(kept.metadata.find("layers:3\n") != std::string::npos);
-    REQUIRE(kept.extras.size() == 2);
-    CHECK(kept.extras[0] == std::pair<int, std::string>(0x82, "layer.height = 0.2\n"));
-    CHECK(kept.extras[1].first == 0x81);
-    CHECK(kept.extras[1].second.size() == 11);
+    REQUIRE(lyr_open(&reader, &source, buffer.data(), 400));
+    REQUIRE(kept.extras.size() == 3);
+    CHECK(kept.extras[0].first == 1);
+    CHECK(kept.extras[0].second.starts_with("source=part.step\n"));
+    CHECK(kept.extras[0].second.find("layers=3\n") != std::string::npos);
+    CHECK(kept.extras[1] == std::pair<int, std::string>(0x82, "layer.height = 0.2\n"));
+    CHECK(kept.extras[2].first == 0x81);
+    CHECK(kept.extras[2].second.size() == 11);
 }
 
 TEST_CASE("C reader: its square root is rounded as IEEE 754 says") {

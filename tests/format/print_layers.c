@@ -22,8 +22,8 @@ int main(int count, char** arguments) {
                    operation.to.z * (reader.quantum_nm / 1e6));
     }
     fclose(file);
-    if (reader.error.status == LYR_END) return 0;
-    printf("%s at byte %llu; the last whole layer is %u\n", reader.error.text,
-           (unsigned long long)reader.error.offset, (unsigned)reader.error.whole_layers);
+    if (reader.status == LYR_END) return 0;
+    printf("error %d at byte %llu; the last whole layer is %u\n", (int)reader.status,
+           (unsigned long long)reader.offset, (unsigned)reader.whole_layers);
     return 1;
 }
