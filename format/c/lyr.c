@@ -8,8 +8,6 @@ enum { before_layers, layer_begins, in_layer, in_chunk, behind_layers };
 enum { metadata_block = 1, layer_block, chunk_block, index_block, end_block };
 enum { grid_code = 0x46, smooth_run = 0x48, parallel_run, repeated_run, skippable = 0xf0 };
 enum { head_bytes = 4, prologue_bytes = 16, end_bytes = 36, longest_payload = 65528 };
-enum { most_zeros = 40, most_predicted = 32 };
-
 static const uint32_t right_crc = 0x48674bc7;  // of any bytes with their CRC behind them
 static const int64_t coordinate_limit = 0x7fffffff, row_limit = INT64_C(1) << 32;
 static const int64_t farthest_beside = INT64_C(1) << 36, unit = INT64_C(1) << 30;
@@ -238,28 +236,25 @@ static void read_block(lyr_reader* r) {
 
 // Motions. What takes a step returns whether there is something to give out.
 
-// |s| <= 1.25 chords: (4 s)^2 <= (5 x)^2 + (5 y)^2. Doubles, which are off by less than 2^24, decide
-// all but what is so near that the low 64 bits of the squares do.
-static bool is_arc(int64_t s, int64_t x, int64_t y) {
-    static const double near = 1099511627776.0;  // 2^40
-    const double a = 4 * (double)s, b = 5 * (double)x, c = 5 * (double)y;
-    const uint64_t u = 4 * (uint64_t)s, v = 5 * (uint64_t)x, w = 5 * (uint64_t)y;
-    const double over = a * a - b * b - c * c;
-    const uint64_t low = u * u - v * v - w * w;
-    return over < -near || (over <= near && (low == 0 || low >> 63));
-}
-
-// To o->to. Lines and arcs that do not climb may be referred to by packed runs.
+// To o->to. Lines and arcs that do not climb may be referred to by packed runs. A sagitta is at most
+// 1.25 chords: (4 s)^2 <= (5 x)^2 + (5 y)^2. Doubles, which are off by less than 2^24, decide all but
+// what is so near that the low 64 bits of the squares do.
 static bool move(lyr_reader* r, lyr_operation* o, lyr_kind kind) {
+    static const double near = 1099511627776.0;  // 2^40
     const lyr_point from = o->from = r->at.head, to = r->at.head = o->to;
-    const int64_t x = (int64_t)to.x - from.x, y = (int64_t)to.y - from.y;
+    const int64_t x = (int64_t)to.x - from.x, y = (int64_t)to.y - from.y, s = o->sagitta;
+    const double a = 4 * (double)s, b = 5 * (double)x, c = 5 * (double)y,
+                 over = a * a - b * b - c * c;
+    const uint64_t u = 4 * (uint64_t)s, v = 5 * (uint64_t)x, w = 5 * (uint64_t)y;
+    const uint64_t low = u * u - v * v - w * w;
     const bool moves = x != 0 || y != 0 || to.z != from.z, draws = kind <= LYR_ARC;
     o->kind = kind;
     check(r, !r->too_large && (r->decoder.has_path || !(draws || kind == LYR_CIRCLE)));
-    check(r, o->sagitta != 0 ? is_arc(o->sagitta, x, y) : kind != LYR_ARC);
+    check(r, (s != 0 || kind != LYR_ARC) &&
+                 (over < -near || (over <= near && (low == 0 || low >> 63))));
     if (moves && draws && !o->hatch && !(r->decoder.code & 0x20))
         r->history[r->decoder.motions++ % LYR_HISTORY] =
-            (lyr_motion){from.x, from.y, to.x, to.y, o->sagitta};
+            (lyr_motion){from.x, from.y, to.x, to.y, s};
     return moves && fine(r);
 }
 
@@ -336,8 +331,8 @@ static uint64_t get_bits(lyr_reader* r, unsigned count) {
 
 static int64_t get_difference(lyr_reader* r, unsigned order) {
     unsigned zeros = 0;
-    while (zeros <= most_zeros && get_bits(r, 1) == 0) ++zeros;
-    if (zeros > most_zeros) r->at.cursor = r->end;
+    while (zeros <= 40 && get_bits(r, 1) == 0) ++zeros;
+    if (zeros > 40) r->at.cursor = r->end;
     return unzigzag(get_bits(r, zeros + order) + (((UINT64_C(1) << zeros) - 1) << order));
 }
 
@@ -466,9 +461,8 @@ static bool take_end(lyr_reader* r, lyr_operation* o) {
     const int64_t a = r->grid[0], b = r->grid[1], w = d->row_offset;
     const bool links = d->linked && d->ends_left == 2 * d->intervals;
     const uint64_t j = d->forward ? 2 * d->intervals - d->ends_left : d->ends_left - 1;
-    const uint64_t known = d->intervals <= most_predicted ? d->alike : 0;
-    int64_t* const before =
-        d->ends[d->intervals <= most_predicted ? j : 0];  // in the last two rows
+    const uint64_t known = d->intervals <= 32 ? d->alike : 0;
+    int64_t* const before = d->ends[d->intervals <= 32 ? j : 0];  // in the last two rows
     const int64_t expected = known == 0   ? d->last
                              : known == 1 ? before[0]
                                           : 2 * before[0] - before[1];
@@ -509,30 +503,27 @@ static bool set_grid(lyr_reader* r) {
     return false;
 }
 
-static bool take_path(lyr_reader* r, lyr_operation* o) {
+static bool take_setting(lyr_reader* r, lyr_operation* o) {
     lyr_style* s = &r->style;
-    uint32_t* const settings[] = {&s->width, &s->height, &s->flow, &s->speed, &s->acceleration};
-    const uint8_t role = get_byte(r), stated = get_byte(r);
-    s->role = role < 19 ? role : 0;
-    check(r, stated <= 31);
-    for (int i = 0; i < 5; ++i)
-        if (stated >> i & 1) *settings[i] = get_setting(r);
-    o->kind = LYR_PATH;
-    r->decoder.has_path = true;
-    return check(r, !r->too_large);
-}
-
-static bool take_setting(lyr_reader* r, lyr_operation* o, uint8_t code) {
+    uint32_t* const fields[] = {&s->width, &s->height, &s->flow, &s->speed, &s->acceleration};
+    const uint8_t code = r->decoder.code;
+    o->kind = (lyr_kind)code;
+    if (code == LYR_PATH) {
+        const uint8_t role = get_byte(r), stated = get_byte(r);
+        s->role = role < 19 ? role : 0;
+        check(r, stated <= 31);
+        for (int i = 0; i < 5; ++i)
+            if (stated >> i & 1) *fields[i] = get_setting(r);
+        return r->decoder.has_path = check(r, !r->too_large);
+    }
     check(r, code > LYR_PATH && code <= LYR_OBJECT);
     check(r, code >= LYR_TRAVEL_SPEED || r->decoder.has_path);
-    o->kind = (lyr_kind)code;
     if (code == LYR_TEMPERATURE) o->heater = get_byte(r);
     if (code == LYR_TEMPERATURE || code == LYR_FAN) o->number = get_setting(r);
     o->value = code == LYR_PAUSE ? get_byte(r) == 1 : get_setting(r);
     if (code == LYR_TEMPERATURE) o->wait = get_byte(r) != 0;
-    if (code == LYR_WIDTH) r->style.width = o->value;
-    if (code == LYR_SPEED) r->style.speed = o->value;
-    if (code == LYR_ACCELERATION) r->style.acceleration = o->value;
+    if (fine(r) && code < LYR_TRAVEL_SPEED)
+        *fields[code == LYR_WIDTH ? 0 : code - LYR_SPEED + 3] = o->value;
     return check(r, !r->too_large && o->heater <= 2 && (code != LYR_FAN || o->value <= 1000));
 }
 
@@ -544,7 +535,6 @@ static bool take_step(lyr_reader* r, lyr_operation* o) {
     if (code == grid_code) return set_grid(r);
     if (code == LYR_HATCH) return begins ? begin_hatch(r, o) : take_hatch(r, o);
     if (code == LYR_WIPE) return take_wipe(r, o, begins);
-    if (code == LYR_PATH) return take_path(r, o);
     if (code >= smooth_run && code <= repeated_run)
         return begins ? begin_packed(r) : take_packed(r, o);
     if (code >= skippable) {
@@ -553,7 +543,7 @@ static bool take_step(lyr_reader* r, lyr_operation* o) {
         check(r, bytes <= left);
         return false;
     }
-    if (code > LYR_HATCH) return take_setting(r, o, code);
+    if (code > LYR_HATCH) return take_setting(r, o);
     if (begins) r->at.left = code < LYR_TRAVEL ? (code & 15) + 1 : 1;
     if (begins) r->decoder.operations -= r->at.left - 1;
     return take_motion(r, o);
@@ -582,38 +572,38 @@ bool lyr_next(lyr_reader* r, lyr_operation* o) {
     return false;
 }
 
-static bool read_prologue(lyr_reader* r) {
-    const uint8_t* at = r->buffer;
+bool lyr_open(lyr_reader* r, const lyr_source* source, void* buffer, uint32_t size) {
+    static const uint8_t magic[] = {'L', 'Y', 'R', 0x1a};
+    const uint8_t* at = buffer;
+    *r = (lyr_reader){.source = *source, .buffer = buffer};
+    r->capacity = size < longest_payload ? size : longest_payload;
+    if (size < LYR_LEAST_BUFFER) return fail(r, LYR_TOO_LONG);
     const bool whole = read_bytes(r, r->buffer, prologue_bytes);
-    const unsigned compared = r->behind < 4 ? (unsigned)r->behind : 4;
-    if (get_fixed(at, compared) != get_fixed((const uint8_t*)"LYR\x1a", compared)) {
-        r->status = LYR_NO_LYR;
-        r->offset = 0;
-    }
-    if (!whole || !fine(r)) return false;
-    if (r->crc != right_crc) return fail(r, LYR_DAMAGED);
+    for (size_t i = 0; i < sizeof magic && i < r->behind; ++i)
+        if (at[i] != magic[i]) {
+            r->status = LYR_NO_LYR;
+            r->offset = 0;
+            return false;
+        }
+    if (!whole || r->crc != right_crc) return fail(r, LYR_DAMAGED);
     r->major = (uint32_t)get_fixed(at + 4, 2);
     r->minor = (uint32_t)get_fixed(at + 6, 2);
     r->quantum_nm = (uint32_t)get_fixed(at + 8, 4);
     r->offset = r->major == 1 ? 8 : 4;
     if (r->major != 1) return fail(r, LYR_UNSUPPORTED);
-    return check(r, r->quantum_nm - 1 <= 999999);
-}
-
-bool lyr_open(lyr_reader* r, const lyr_source* source, void* buffer, uint32_t size) {
-    *r = (lyr_reader){.source = *source, .buffer = buffer};
-    r->capacity = size < longest_payload ? size : longest_payload;
-    if (size < LYR_LEAST_BUFFER) return fail(r, LYR_TOO_LONG);
-    if (!read_prologue(r) || !read_head(r) || !check(r, r->type == metadata_block)) return false;
-    if (!read_payload(r, true)) return false;
+    if (!check(r, r->quantum_nm - 1 <= 999999) || !read_head(r) ||
+        !check(r, r->type == metadata_block) || !read_payload(r, true))
+        return false;
     while (read_head(r) && r->type != layer_block && r->type != index_block) read_block(r);
     return fine(r);
 }
 
-static bool seek(lyr_reader* r, uint64_t offset) {
+static bool go_to(lyr_reader* r, uint64_t offset, uint8_t type) {
     r->behind = offset;
     r->has_head = false;
-    return (r->source.seek && r->source.seek(r->source.user, offset)) || fail(r, LYR_UNREADABLE);
+    if (!r->source.seek || !r->source.seek(r->source.user, offset)) return fail(r, LYR_UNREADABLE);
+    return read_head(r) &&
+           (r->type == type || fail(r, type == end_block ? LYR_CUT_SHORT : LYR_NONSENSE));
 }
 
 bool lyr_seek_layer(lyr_reader* r, uint32_t index) {
@@ -623,17 +613,15 @@ bool lyr_seek_layer(lyr_reader* r, uint32_t index) {
     r->where = before_layers;
     r->sought = true;
     r->layers = index;
-    if (size < last || !seek(r, size - last) || !read_head(r) || r->type != end_block ||
-        r->length != end_bytes)
-        return fail(r, LYR_CUT_SHORT);
-    if (!read_payload(r, true)) return false;
+    if (!go_to(r, size < last ? 0 : size - last, end_block) || !read_payload(r, true)) return false;
     const uint64_t layers = get_fixed(r->buffer, 4);
-    if (!seek(r, get_fixed(r->buffer + 28, 8)) || !read_head(r) ||
-        !check(r, r->type == index_block && r->length == layers * 8) || !read_payload(r, false))
+    if (!go_to(r, get_fixed(r->buffer + 28, 8), index_block) || !read_payload(r, false))
         return false;
+    if (!check(r, r->length == layers * 8)) return false;
     if (index >= layers) return fail(r, LYR_NO_SUCH_LAYER);
-    if (seek(r, r->offset + head_bytes + (uint64_t)index * 8) && read_bytes(r, r->buffer, 8) &&
-        seek(r, get_fixed(r->buffer, 8)) && read_head(r) && check(r, r->type == layer_block))
-        read_block(r);
+    const uint64_t entry = r->offset + head_bytes + (uint64_t)index * 8;
+    if (!r->source.seek(r->source.user, entry) || !read_bytes(r, r->buffer, 8))
+        return fail(r, LYR_UNREADABLE);
+    if (go_to(r, get_fixed(r->buffer, 8), layer_block)) read_block(r);
     return fine(r);
 }
