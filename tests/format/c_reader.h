@@ -39,7 +39,9 @@ struct CReader {
     explicit CReader(Memory& memory, std::size_t buffer_size = buffer_bytes)
         : buffer(buffer_size), source(memory.source()) {}
 
-    bool open() { return lyr_open(&reader, &source, buffer.data(), static_cast<std::uint32_t>(buffer.size())); }
+    bool open() {
+        return lyr_open(&reader, &source, buffer.data(), static_cast<std::uint32_t>(buffer.size()));
+    }
 
     std::vector<std::byte> buffer;
     lyr_source source;

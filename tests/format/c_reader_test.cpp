@@ -8,6 +8,7 @@
 #include <numeric>
 #include <random>
 
+#include "damages.h"
 #include "files.h"
 #include "sample.h"
 #include "small_file.h"
@@ -54,23 +55,13 @@ TEST_CASE("C reader 3: the same operations as in C++, for random prints") {
 TEST_CASE("C reader 1 and 3: the same verdict whatever bit is flipped") {
     const FileBytes file = test::small_file();
     CHECK(difference(file) == "");
-    FileBytes damaged = file;
-    for (std::size_t at = 0; at < file.size(); ++at) {
-        for (int bit = 0; bit < 8; ++bit) {
-            damaged[at] ^= static_cast<std::byte>(1 << bit);
-            INFO("byte " << at << " bit " << bit);
-            REQUIRE(difference(damaged) == "");
-            damaged[at] = file[at];
-        }
-    }
+    test::with_each_bit_flipped(
+        file, [](const FileBytes& damaged, std::size_t) { REQUIRE(difference(damaged) == ""); });
 }
 
 TEST_CASE("C reader 2 and 3: the same verdict wherever the file is cut, and the last whole layer") {
     const FileBytes file = test::small_file();
-    for (std::size_t size = 0; size < file.size(); ++size) {
-        INFO("cut at byte " << size);
-        REQUIRE(difference({file.begin(), file.begin() + static_cast<std::ptrdiff_t>(size)}) == "");
-    }
+    test::with_each_cut(file, [](const FileBytes& cut) { REQUIRE(difference(cut) == ""); });
     FileBytes longer = file;
     longer.push_back(std::byte{0});
     CHECK(difference(longer) == "");
@@ -95,47 +86,22 @@ TEST_CASE("C reader 3 and 4: the same verdict on any byte of any payload, with a
 
 TEST_CASE("C reader 3: blocks that are missing, doubled, swapped or of another type") {
     const FileBytes file = test::small_file();
+    const auto same = [](const FileBytes& bytes, const auto&) { CHECK(difference(bytes) == ""); };
+    test::with_each_block_missing_or_doubled(file, same);
+    test::with_each_two_blocks_swapped(file, same);
     const std::vector<test::Block> blocks = test::split(file);
     for (std::size_t i = 0; i < blocks.size(); ++i) {
-        INFO("block " << i);
-        auto changed = blocks;
-        changed.erase(changed.begin() + static_cast<std::ptrdiff_t>(i));
-        CHECK(difference(test::join(file, changed)) == "");
-        changed = blocks;
-        changed.insert(changed.begin() + static_cast<std::ptrdiff_t>(i), blocks[i]);
-        CHECK(difference(test::join(file, changed)) == "");
         for (const int type : {0x00, 0x06, 0x47, 0x80, 0x81, 0x82, 0xff, 1, 2, 3, 4, 5}) {
-            changed = blocks;
+            INFO("block " << i << " as type " << type);
+            auto changed = blocks;
             changed[i].type = static_cast<std::uint8_t>(type);
             CHECK(difference(test::join(file, changed)) == "");
         }
-        if (i == 0) continue;
-        changed = blocks;
-        std::swap(changed[i], changed[i - 1]);
-        CHECK(difference(test::join(file, changed)) == "");
     }
 }
 
 TEST_CASE("C reader 3 and 4: the same verdict on random operations") {
-    std::mt19937 random(7);
-    const auto pick = [&](int count) {
-        return std::uniform_int_distribution<int>(0, count - 1)(random);
-    };
-    const std::vector<int> codes{0x00, 0x1f, 0x20, 0x33, 0x40, 0x41, 0x42, 0x45, 0x46, 0x47, 0x48,
-                                 0x49, 0x4a, 0x4b, 0x50, 0x51, 0x54, 0x57, 0x58, 0x5b, 0xf3};
-    for (int i = 0; i < 20000; ++i) {
-        FileBytes raw;
-        for (const int byte : {0x50, 1, 0, 0x46, 0x80, 0x80, 0x80, 0x80, 8, 0, 0, 2})
-            raw.push_back(static_cast<std::byte>(byte));
-        const int size = pick(60);
-        for (int k = 0; k < size; ++k)
-            raw.push_back(static_cast<std::byte>(
-                pick(3) == 0 ? codes[static_cast<std::size_t>(pick(static_cast<int>(codes.size())))]
-                : pick(4)    ? pick(16)
-                             : pick(256)));
-        INFO("turn " << i);
-        REQUIRE(difference(test::raw_file(raw, 3)) == "");
-    }
+    test::with_random_operations([](const FileBytes& file) { REQUIRE(difference(file) == ""); });
 }
 
 TEST_CASE("reader: a link of no length leaves the next gap of its row a travel") {
@@ -190,8 +156,8 @@ TEST_CASE("C reader 3: a buffer that a payload does not fit is said so, one that
     std::size_t longest = 0;
     for (const test::Block& block : test::split(file))
         if (block.type < 0x80) longest = std::max(longest, block.payload.size());
-    for (const std::size_t size : {std::size_t{LYR_LEAST_BUFFER} - 1, longest - 1, longest,
-                                   longest + 100, buffer_bytes}) {
+    for (const std::size_t size :
+         {std::size_t{LYR_LEAST_BUFFER} - 1, longest - 1, longest, longest + 100, buffer_bytes}) {
         test::Memory memory{file};
         test::CReader c(memory, size);
         c.open();
