@@ -336,35 +336,35 @@ static int64_t get_difference(lyr_reader* r, unsigned order) {
     return unzigzag(get_bits(r, zeros + order) + (((UINT64_C(1) << zeros) - 1) << order));
 }
 
+// The length of a motion's chord. Each is asked for twice in turn, and roots take long.
+static double length_of(struct lyr_decoder* d, uint64_t number, double square) {
+    if (number + 1 != d->measured) d->length = square_root(square);
+    d->measured = number + 1;
+    return d->length;
+}
+
 // A motion's direction where it starts (side 1) or ends (-1), of length `size`.
 struct direction {
     double x, y, size, curvature;
 };
-static struct direction direction_of(const lyr_motion* m, double side) {
+static struct direction direction_of(lyr_reader* r, uint64_t number, double side) {
+    const lyr_motion* m = &r->history[number % LYR_HISTORY];
     const double x = (double)m->to_x - m->from_x, y = (double)m->to_y - m->from_y;
-    const double s = (double)m->sagitta, square = x * x + y * y, root = square_root(square);
-    const double rise = 4 * s * s, across = side * (4 * s * root), along = square - rise;
-    const double sum = square + rise;
-    return (struct direction){x * along + y * across, y * along - x * across, root * sum,
+    const double s = (double)m->sagitta, square = x * x + y * y, rise = 4 * s * s;
+    const double length = length_of(&r->decoder, number, square), sum = square + rise;
+    const double along = square - rise, across = side * (4 * s * length);
+    return (struct direction){x * along + y * across, y * along - x * across, length * sum,
                               8 * s / sum};
 }
 
-// The sagitta that goes on smoothly from the motion before, along the chord (x, y).
-static int64_t smooth_sagitta(const lyr_motion* m, double x, double y) {
-    const double x0 = (double)m->to_x - m->from_x, y0 = (double)m->to_y - m->from_y;
-    const double c0 = square_root(x0 * x0 + y0 * y0), c = square_root(x * x + y * y);
-    const double along = x0 * x + y0 * y, across = x0 * y - y0 * x;
-    const double turn = c0 * c + along, rise = 2 * (double)m->sagitta;
-    const double e = c * (across * c0 - rise * turn) / (2 * (c0 * turn + across * rise));
-    return 4 * e > c || -4 * e > c ? 0 : nearest(e);
-}
-
-// Adds the place and the sagitta to expect beside `old`, which `next` follows.
-static void go_beside(double distance, const lyr_motion* old, const lyr_motion* next,
-                      int64_t sum[3]) {
+// Adds the place and the sagitta to expect beside motion `number`.
+static void go_beside(lyr_reader* r, uint64_t number, int64_t sum[3]) {
+    const lyr_motion *old = &r->history[number % LYR_HISTORY],
+                     *next = &r->history[(number + 1) % LYR_HISTORY];
+    const double distance = (double)r->decoder.distance / 16;
     const bool joined = next->from_x == old->to_x && next->from_y == old->to_y;
-    const struct direction e = direction_of(old, -1);
-    struct direction n = joined ? direction_of(next, 1) : e;
+    const struct direction e = direction_of(r, number, -1);
+    struct direction n = joined ? direction_of(r, number + 1, 1) : e;
     double cosine = e.x * n.x + e.y * n.y, one = e.size * n.size;
     if (cosine < -0.5 * one) {
         n = e;
@@ -376,6 +376,18 @@ static void go_beside(double distance, const lyr_motion* old, const lyr_motion* 
     sum[2] += nearest((double)old->sagitta * (1 - distance * e.curvature));
 }
 
+// The sagitta that goes on smoothly from the motion before, along the chord (x, y).
+static int64_t smooth_sagitta(lyr_reader* r, const lyr_motion* m, double x, double y) {
+    struct lyr_decoder* d = &r->decoder;
+    const double x0 = (double)m->to_x - m->from_x, y0 = (double)m->to_y - m->from_y;
+    const double c0 = length_of(d, d->motions - 1, x0 * x0 + y0 * y0);
+    const double c = length_of(d, d->motions, x * x + y * y);
+    const double along = x0 * x + y0 * y, across = x0 * y - y0 * x;
+    const double turn = c0 * c + along, rise = 2 * (double)m->sagitta;
+    const double e = c * (across * c0 - rise * turn) / (2 * (c0 * turn + across * rise));
+    return 4 * e > c || -4 * e > c ? 0 : nearest(e);
+}
+
 static bool take_packed(lyr_reader* r, lyr_operation* o) {
     struct lyr_decoder* d = &r->decoder;
     const lyr_motion* last = &r->history[(d->motions - 1) % LYR_HISTORY];
@@ -385,9 +397,9 @@ static bool take_packed(lyr_reader* r, lyr_operation* o) {
     for (int i = 0; i < 3; ++i) sum[i] = get_difference(r, i < 2 ? d->orders & 15 : d->orders >> 4);
     if (--r->at.left == 0) get_bits(r, (8u - d->bit) % 8);
     if (d->code == smooth_run && d->motions > 0 && last->to_x == x && last->to_y == y)
-        sum[2] += smooth_sagitta(last, (double)sum[0], (double)sum[1]);
+        sum[2] += smooth_sagitta(r, last, (double)sum[0], (double)sum[1]);
     if (d->code == parallel_run) {
-        go_beside((double)d->distance / 16, old, &r->history[d->old % LYR_HISTORY], sum);
+        go_beside(r, d->old - 1, sum);
     } else {
         const bool repeats = d->code == repeated_run;
         sum[0] += x + (repeats ? (int64_t)old->to_x - old->from_x : 0);

@@ -138,7 +138,8 @@ typedef struct lyr_reader {
     struct lyr_decoder {
         bool has_path, has_grid, one_way, forward, linked;
         uint8_t code, orders, bit;
-        uint64_t operations, motions, old, group_rows, intervals, alike, ends_left;
+        uint64_t operations, motions, measured, old, group_rows, intervals, alike, ends_left;
+        double length;
         int64_t back, distance, row, row_offset, last, ends[64][2];
     } decoder;
     lyr_motion history[LYR_HISTORY];
