@@ -77,6 +77,7 @@ private:
     };
     Expected expect_smooth(std::int64_t x, std::int64_t y);
     Expected expect_beside();
+    void go_on_beside();
     Expected expect_repeated();
     bool give_packed(const Point& to, std::int64_t sagitta, Operation& out);
     bool decode_wipe(Operation& out);
@@ -121,7 +122,7 @@ private:
     double last_length_ = 0;
     Packed packed_ = Packed::smooth;
     std::uint64_t old_ = 0;  // the number of the motion that the next one is parallel to or repeats
-    Course old_course_;
+    Course old_course_, next_course_;  // of a parallel run: of that motion and the one behind it
     std::int64_t back_ = 0, distance_ = 0;  // of the last run that had them
 
     Grid grid_;
