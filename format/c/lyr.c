@@ -236,22 +236,25 @@ static void read_block(lyr_reader* r) {
 
 // Motions. What takes a step returns whether there is something to give out.
 
-// To o->to. Lines and arcs that do not climb may be referred to by packed runs. A sagitta is at most
-// 1.25 chords: (4 s)^2 <= (5 x)^2 + (5 y)^2. Doubles, which are off by less than 2^24, decide all but
-// what is so near that the low 64 bits of the squares do.
-static bool move(lyr_reader* r, lyr_operation* o, lyr_kind kind) {
+// |s| <= 1.25 chords: (4 s)^2 <= (5 x)^2 + (5 y)^2. Doubles, which are off by less than 2^24, decide
+// all but what is so near that the low 64 bits of the squares do.
+static bool is_arc(int64_t s, int64_t x, int64_t y) {
     static const double near = 1099511627776.0;  // 2^40
+    const double a = 4 * (double)s, b = 5 * (double)x, c = 5 * (double)y;
+    const uint64_t u = 4 * (uint64_t)s, v = 5 * (uint64_t)x, w = 5 * (uint64_t)y;
+    const double over = a * a - b * b - c * c;
+    const uint64_t low = u * u - v * v - w * w;
+    return over < -near || (over <= near && (low == 0 || low >> 63));
+}
+
+// To o->to. Lines and arcs that do not climb may be referred to by packed runs.
+static bool move(lyr_reader* r, lyr_operation* o, lyr_kind kind) {
     const lyr_point from = o->from = r->at.head, to = r->at.head = o->to;
     const int64_t x = (int64_t)to.x - from.x, y = (int64_t)to.y - from.y, s = o->sagitta;
-    const double a = 4 * (double)s, b = 5 * (double)x, c = 5 * (double)y,
-                 over = a * a - b * b - c * c;
-    const uint64_t u = 4 * (uint64_t)s, v = 5 * (uint64_t)x, w = 5 * (uint64_t)y;
-    const uint64_t low = u * u - v * v - w * w;
     const bool moves = x != 0 || y != 0 || to.z != from.z, draws = kind <= LYR_ARC;
     o->kind = kind;
     check(r, !r->too_large && (r->decoder.has_path || !(draws || kind == LYR_CIRCLE)));
-    check(r, (s != 0 || kind != LYR_ARC) &&
-                 (over < -near || (over <= near && (low == 0 || low >> 63))));
+    check(r, s == 0 ? kind != LYR_ARC : is_arc(s, x, y));
     if (moves && draws && !o->hatch && !(r->decoder.code & 0x20))
         r->history[r->decoder.motions++ % LYR_HISTORY] =
             (lyr_motion){from.x, from.y, to.x, to.y, s};
