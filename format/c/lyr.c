@@ -1,7 +1,7 @@
 // A loop over blocks around one over the operations of a chunk. An operation says how many steps it
-// has (motions of a run, pieces of a wipe, rows of a hatch), which are then taken one by one. Errors
-// stick: behind the first one all reads as zeros, and nothing is given out. Numbers are 64 bits wide
-// and bounded by the format's limits; one that is too large is noted and makes its step an error.
+// has (motions of a run, pieces of a wipe, rows of a hatch), which are then taken one by one.
+// Errors stick: behind the first one all reads as zeros, and nothing is given out. Numbers have 64
+// bits and the format's limits; one that is too large is noted and makes its step an error.
 #include "lyr.h"
 
 enum { before_layers, layer_begins, in_layer, in_chunk, behind_layers };
@@ -236,8 +236,8 @@ static void read_block(lyr_reader* r) {
 
 // Motions. What takes a step returns whether there is something to give out.
 
-// |s| <= 1.25 chords: (4 s)^2 <= (5 x)^2 + (5 y)^2. Doubles, which are off by less than 2^24, decide
-// all but what is so near that the low 64 bits of the squares do.
+// |s| <= 1.25 chords: (4 s)^2 <= (5 x)^2 + (5 y)^2. Doubles, which are off by less than 2^24,
+// decide all but what is so near that the low 64 bits of the squares do.
 static bool is_arc(int64_t s, int64_t x, int64_t y) {
     static const double near = 1099511627776.0;  // 2^40
     const double a = 4 * (double)s, b = 5 * (double)x, c = 5 * (double)y;
@@ -301,7 +301,7 @@ static bool take_wipe(lyr_reader* r, lyr_operation* o, bool begins) {
 
 // Packed runs. The specification gives the order of operations: each must be rounded by itself.
 
-// By the root of mantissa x 2^54, two bits a step: it has a bit more than a double, which rounds it.
+// By the root of mantissa x 2^54, two bits a step: a bit more than a double has, which rounds it.
 static double square_root(double value) {
     double scale = 1 / 67108864.0;  // 2^-26
     if (!(value > 0)) return 0;

@@ -1,14 +1,14 @@
-// Reads a .lyr file in C99 with nothing but a compiler: no library, no heap. Made for microcontrollers;
-// docs/lyr-format.md gives the format, docs/c-reader.md an example. Packed runs need doubles of IEEE
-// 754 that are rounded by each operation: build with -ffp-contract=off where the processor fuses them.
+// Reads a .lyr file in C99 with nothing but a compiler: no library, no heap. For microcontrollers;
+// docs/lyr-format.md gives the format, docs/c-reader.md an example. Packed runs need IEEE doubles,
+// rounded by each operation: build with -ffp-contract=off where the processor fuses them.
 //
 // Contract
 //  1. No operation is given out before the CRC of its chunk was found right, nor a layer's state
 //     before that of its block. After an error the reader stays at it until lyr_seek_layer().
 //  2. LYR_END comes only after the end block was found right: counts, index, and nothing behind it.
-//  3. It accepts and refuses what format/reader.h does, at the same byte, but for the metadata's text,
-//     which it hands on; with a buffer of 65528 bytes. A smaller one (at least LYR_LEAST_BUFFER) does
-//     for files whose blocks have no longer payload (else LYR_TOO_LONG).
+//  3. It accepts and refuses what format/reader.h does, at the same byte, but for the text of the
+//     metadata, which it hands on; with a buffer of 65528 bytes. A smaller one (at least
+//     LYR_LEAST_BUFFER) does for files whose blocks have no longer payload (else LYR_TOO_LONG).
 //  4. No input makes it read or write out of bounds, loop, or leave the ranges of its numbers.
 //  5. Coordinates are in quanta, each within +-(2^31 - 1); other numbers are in the file's units.
 //  6. Motions of no length are passed over, and what a later minor version added.
@@ -43,8 +43,8 @@ typedef struct lyr_source {
     // To a byte of the file, whose size must be stated; both for lyr_seek_layer() only.
     bool (*seek)(void* user, uint64_t offset);
     uint64_t size;
-    // If not null: a piece of the metadata (type 1), a thumbnail or the like (0x80 and above), and how
-    // much of it is left. Not to be trusted before the call that reads it has come back without error.
+    // If not null: a piece of the metadata (type 1), a thumbnail or the like (0x80 and above), and
+    // how much is left of it. Not to be trusted before the call that reads it came back all right.
     void (*extra)(void* user, uint8_t type, const uint8_t* bytes, uint32_t count, uint32_t left);
     void* user;
 } lyr_source;
@@ -114,7 +114,7 @@ typedef struct lyr_motion {
     int64_t sagitta;
 } lyr_motion;
 
-// What is read is at hand in `source` order; the rest of a reader's state is its own affair.
+// What stands behind `source` is the reader's own affair.
 typedef struct lyr_reader {
     lyr_status status;
     uint64_t offset;                    // of an error: byte of the file
@@ -152,8 +152,8 @@ bool lyr_next(lyr_reader* reader, lyr_operation* operation);
 // Goes by the index: the next operation will be LYR_LAYER of this layer (from 0). The end is then
 // checked without counts and index.
 bool lyr_seek_layer(lyr_reader* reader, uint32_t index);
-// Behind a piece of a wipe: all its pieces are given out again. So the whole way can be added up, and
-// with it how fast the filament is to be drawn back, before the first piece is carried out.
+// Behind a piece of a wipe: all its pieces are given out again. So the whole way can be added up,
+// and with it how fast the filament is to be drawn back, before the first piece is carried out.
 void lyr_wipe_again(lyr_reader* reader);
 
 #ifdef __cplusplus
