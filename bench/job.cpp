@@ -9,6 +9,7 @@
 #include "bench/gcode.h"
 #include "bench/program.h"
 #include "bench/scratch_file.h"
+#include "format/export/gcode.h"
 #include "format/reader.h"
 #include "slicer/bounds.h"
 #include "slicer/slicer.h"
@@ -25,7 +26,7 @@ constexpr double least_speedup = 10;
 constexpr double most_memory_share = 0.25;
 constexpr double least_error_ratio = 5;
 constexpr double most_volume_difference = 0.05;
-constexpr double least_size_ratio = 15;
+constexpr double least_size_ratio = 15, least_own_size_ratio = 8;
 
 // Our defaults, said to PrusaSlicer, and what it has by default and we have not, switched off. Its classic walls are as
 // wide everywhere as ours, and quicker made than its variable ones. The bed has the model's origin in its middle, so
@@ -105,6 +106,7 @@ struct Outcome {
     Usage usage;
     double volume_mm3 = 0, bytes = 0;
     std::vector<double> distances_mm;  // sorted
+    double gcode_bytes = 0;            // of ours, as lyrview writes it
 };
 
 Result<double> lyr_volume_mm3(const std::string& path) {
@@ -120,15 +122,28 @@ Result<double> lyr_volume_mm3(const std::string& path) {
     }
 }
 
+Result<double> own_gcode_bytes(const std::string& path) {
+    auto reader = format::Reader::open(path);
+    if (!reader) return reader.error();
+    double bytes = 0;
+    Diagnostics notes;
+    const auto count = [&](std::string_view piece) { bytes += static_cast<double>(piece.size()); };
+    const Status written = format::write_gcode(*reader, {}, count, notes);
+    if (!written) return written.error();
+    return bytes;
+}
+
 Result<Outcome> ours(const Job& job, double layer_height_mm, const occt::Surfaces& surfaces) {
     const auto usage = median_usage(runs, job.ours());
     if (!usage) return usage.error();
     const auto volume_mm3 = lyr_volume_mm3(job.result_path);
     if (!volume_mm3) return volume_mm3.error();
     const double bytes = static_cast<double>(std::filesystem::file_size(job.result_path));
+    const auto gcode_bytes = own_gcode_bytes(job.result_path);
+    if (!gcode_bytes) return gcode_bytes.error();
     const auto flank = printed_points(job.step_path, layer_height_mm, points);
     if (!flank) return flank.error();
-    return Outcome{*usage, *volume_mm3, bytes, distances_mm(surfaces, *flank)};
+    return Outcome{*usage, *volume_mm3, bytes, distances_mm(surfaces, *flank), *gcode_bytes};
 }
 
 // PrusaSlicer puts the part's lowest point on the bed and leaves it where it is otherwise.
@@ -164,7 +179,7 @@ Result<Outcome> theirs(const Job& job, double layer_height_mm, const occt::Surfa
     const double bytes = static_cast<double>(std::filesystem::file_size(job.result_path));
     const auto distances = their_distances_mm(job, layer_height_mm, surfaces);
     if (!distances) return distances.error();
-    return Outcome{*usage, gcode->volume_mm3, bytes, *distances};
+    return Outcome{*usage, gcode->volume_mm3, bytes, *distances, 0};
 }
 
 std::string percent(double share) {
@@ -194,6 +209,8 @@ Table table_of(const std::string& title, const Outcome& ours, const Outcome& the
         "+- " + percent(most_volume_difference), " mm3");
     row("file", ours.bytes / bytes_per_mb, theirs.bytes / bytes_per_mb, number(least_size_ratio),
         " MB");
+    table.rows.push_back({"our own G-code of it", number(ours.gcode_bytes / bytes_per_mb) + " MB",
+                          "", number(ours.gcode_bytes / ours.bytes), number(least_own_size_ratio)});
     return table;
 }
 
@@ -219,6 +236,8 @@ void require(const std::string& name, const Outcome& ours, const Outcome& theirs
     most("extruded volume off PrusaSlicer's", std::abs(ours.volume_mm3 / theirs.volume_mm3 - 1),
          most_volume_difference);
     least("PrusaSlicer's file, times ours", theirs.bytes / ours.bytes, least_size_ratio);
+    least("our own G-code, times the .lyr file", ours.gcode_bytes / ours.bytes,
+          least_own_size_ratio);
 }
 
 }  // namespace

@@ -94,6 +94,12 @@ std::string each(const format::KindStatistics& kind) {
                : number(static_cast<double>(kind.bytes) / static_cast<double>(kind.count));
 }
 
+// An interval is reached by a line of the hatch or by a travel, and is a line itself.
+std::string each_interval(const format::Statistics& statistics) {
+    const format::KindStatistics& lines = statistics.hatch_lines;
+    return each({(lines.count + statistics.hatch_travels) / 2, lines.bytes});
+}
+
 void add_reading(Table& table, const std::string& name, const Read& read) {
     table.rows.push_back({name, number(read.bytes / million) + " MB",
                           number(read.operations / million) + " million",
@@ -102,9 +108,10 @@ void add_reading(Table& table, const std::string& name, const Read& read) {
 }
 
 bool show_sizes(const std::vector<std::string>& paths) {
-    Table table{"Bytes an operation",
-                {"file", "bytes", "line", "arc", "circle", "hatch line", "travel"},
-                {}};
+    Table table{
+        "Bytes an operation",
+        {"file", "bytes", "line", "arc", "circle", "hatch line", "hatch interval", "travel"},
+        {}};
     for (const std::string& path : paths) {
         auto reader = format::Reader::open(path);
         const auto statistics = reader ? format::statistics_of(*reader) : reader.error();
@@ -112,10 +119,10 @@ bool show_sizes(const std::vector<std::string>& paths) {
             std::fprintf(stderr, "bench_lyr: %s\n", to_string(statistics.error()).c_str());
             return false;
         }
-        table.rows.push_back({std::filesystem::path(path).stem().string(),
-                              std::to_string(statistics->bytes), each(statistics->lines),
-                              each(statistics->arcs), each(statistics->circles),
-                              each(statistics->hatch_lines), each(statistics->travels)});
+        table.rows.push_back(
+            {std::filesystem::path(path).stem().string(), std::to_string(statistics->bytes),
+             each(statistics->lines), each(statistics->arcs), each(statistics->circles),
+             each(statistics->hatch_lines), each_interval(*statistics), each(statistics->travels)});
     }
     print(table);
     return true;

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 
 #include "format/operation.h"
@@ -55,6 +56,10 @@ inline constexpr double widest_sagitta_per_chord = (1 + std::numbers::sqrt2) / 2
 inline bool is_arc(const Point& from, const Point& to, std::int64_t sagitta) {
     constexpr std::int64_t largest_sagitta = std::int64_t{1} << 33;
     if (sagitta < -largest_sagitta || sagitta > largest_sagitta) return false;
+    // Most are far from that.
+    if (std::abs(sagitta) <= std::abs(to.x - from.x) ||
+        std::abs(sagitta) <= std::abs(to.y - from.y))
+        return true;
     const auto scaled = [](std::uint64_t factor, std::int64_t value) {
         return factor * static_cast<std::uint64_t>(value < 0 ? -value : value);
     };

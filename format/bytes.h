@@ -79,11 +79,12 @@ public:
         std::int64_t x = 0, y = 0, z = 0;
     };
     Three bit_numbers(unsigned order, unsigned last_order) {
-        Ahead ahead{peek(), 0};
+        if (left() < 8) return long_bit_numbers(order, last_order);
+        Ahead ahead{get_u64(at_) >> bit_, 0};
         const std::uint64_t x = ahead.number(order), y = ahead.number(order);
         const std::uint64_t z = ahead.number(last_order);
         if (ahead.taken > fewest_peeked) return long_bit_numbers(order, last_order);
-        take(ahead.taken);
+        pass(ahead.taken);
         return {unzigzag(x), unzigzag(y), unzigzag(z)};
     }
     // To the next whole byte.
@@ -157,9 +158,13 @@ private:
             fail();
             return false;
         }
-        at_ += behind / 8;
-        bit_ = behind % 8;
+        pass(bits);
         return true;
+    }
+
+    void pass(unsigned bits) {
+        at_ += (bit_ + bits) / 8;
+        bit_ = (bit_ + bits) % 8;
     }
 
     std::uint64_t long_varint() {

@@ -71,9 +71,14 @@ private:
     bool reach_back(std::int64_t least);
     bool begin_packed(Operation& out);
     bool decode_packed(Operation& out);
-    bool give_smooth(std::int64_t x, std::int64_t y, std::int64_t sagitta, Operation& out);
-    bool give_beside(std::int64_t x, std::int64_t y, std::int64_t sagitta, Operation& out);
-    bool give_repeated(std::int64_t x, std::int64_t y, std::int64_t sagitta, Operation& out);
+    // Where the next motion of a packed run would end if nothing were stored.
+    struct Expected {
+        std::int64_t x = 0, y = 0, sagitta = 0;
+    };
+    Expected expect_smooth(std::int64_t x, std::int64_t y);
+    Expected expect_beside();
+    void go_on_beside();
+    Expected expect_repeated();
     bool give_packed(const Point& to, std::int64_t sagitta, Operation& out);
     bool decode_wipe(Operation& out);
     bool decode_wipe_piece(Operation& out);
@@ -115,10 +120,9 @@ private:
     bool smooth_ = false;  // a smooth run goes on from a motion before it
     Vector last_chord_;
     double last_length_ = 0;
-    std::int64_t last_sagitta_ = 0;
     Packed packed_ = Packed::smooth;
     std::uint64_t old_ = 0;  // the number of the motion that the next one is parallel to or repeats
-    Course old_course_;
+    Course old_course_, next_course_;  // of a parallel run: of that motion and the one behind it
     std::int64_t back_ = 0, distance_ = 0;  // of the last run that had them
 
     Grid grid_;

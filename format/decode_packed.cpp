@@ -14,7 +14,6 @@ bool ChunkDecoder::decode_smooth(Operation& out) {
         smooth_ = last.to_x == at_.x && last.to_y == at_.y;
         last_chord_ = chord_of(last);
         last_length_ = length_of(last_chord_);
-        last_sagitta_ = last.sagitta;
     }
     return begin_packed(out);
 }
@@ -40,6 +39,7 @@ bool ChunkDecoder::decode_parallel(Operation& out) {
     distance_ += distance;
     packed_ = Packed::parallel;
     old_course_ = course_of((*history_)[old_]);
+    next_course_ = course_of((*history_)[old_ + 1]);
     return begin_packed(out);
 }
 
@@ -61,50 +61,40 @@ bool ChunkDecoder::begin_packed(Operation& out) {
     return decode_packed(out);
 }
 
-bool ChunkDecoder::decode_packed(Operation& out) {
-    const auto [x, y, sagitta] = cursor_.bit_numbers(position_order_, sagitta_order_);
-    if (--packed_left_ == 0) cursor_.end_bits();
-    if (cursor_.bad()) return fail("");
-    if (packed_ == Packed::parallel) return give_beside(x, y, sagitta, out);
-    return packed_ == Packed::smooth ? give_smooth(x, y, sagitta, out)
-                                     : give_repeated(x, y, sagitta, out);
-}
-
-bool ChunkDecoder::give_smooth(std::int64_t x, std::int64_t y, std::int64_t sagitta,
-                               Operation& out) {
+inline ChunkDecoder::Expected ChunkDecoder::expect_smooth(std::int64_t x, std::int64_t y) {
     const Vector chord{static_cast<double>(x), static_cast<double>(y)};
     const double length = length_of(chord);
-    if (smooth_) sagitta += smooth_sagitta(last_chord_, last_length_, last_sagitta_, chord, length);
+    const PlaneMotion& last = (*history_)[history_->count() - 1];
+    const std::int64_t sagitta =
+        smooth_ ? smooth_sagitta(last_chord_, last_length_, last.sagitta, chord, length) : 0;
     smooth_ = true;
     last_chord_ = chord;
     last_length_ = length;
-    last_sagitta_ = sagitta;
-    return give_packed({at_.x + x, at_.y + y, at_.z}, sagitta, out);
+    return {at_.x, at_.y, sagitta};
 }
 
-bool ChunkDecoder::give_beside(std::int64_t x, std::int64_t y, std::int64_t sagitta,
-                               Operation& out) {
+inline ChunkDecoder::Expected ChunkDecoder::expect_beside() {
     const PlaneMotion& old = (*history_)[old_];
-    const PlaneMotion& next = (*history_)[++old_];
-    const Course course = old_course_;
-    old_course_ = course_of(next);
+    const PlaneMotion& next = (*history_)[old_ + 1];
     const bool joined = next.from_x == old.to_x && next.from_y == old.to_y;
     const double distance = static_cast<double>(distance_) / scale::distance;
-    const Place end = end_beside(old, course, joined ? old_course_.start : course.end,
-                                 joined ? old_course_.size : course.size, distance);
-    return give_packed({end.x + x, end.y + y, at_.z},
-                       sagitta + sagitta_beside(old, course, distance), out);
+    const Place end = end_beside(old, old_course_, joined ? next_course_.start : old_course_.end,
+                                 joined ? next_course_.size : old_course_.size, distance);
+    return {end.x, end.y, sagitta_beside(old, old_course_, distance)};
 }
 
-bool ChunkDecoder::give_repeated(std::int64_t x, std::int64_t y, std::int64_t sagitta,
-                                 Operation& out) {
-    const PlaneMotion old = (*history_)[old_++];
-    const std::int64_t old_x = std::int64_t{old.to_x} - old.from_x;
-    const std::int64_t old_y = std::int64_t{old.to_y} - old.from_y;
-    return give_packed({at_.x + old_x + x, at_.y + old_y + y, at_.z}, old.sagitta + sagitta, out);
+// A motion ahead of its use, so that the processor reckons both at the same time.
+inline void ChunkDecoder::go_on_beside() {
+    old_course_ = next_course_;
+    next_course_ = course_of((*history_)[++old_ + 1]);
 }
 
-bool ChunkDecoder::give_packed(const Point& to, std::int64_t sagitta, Operation& out) {
+inline ChunkDecoder::Expected ChunkDecoder::expect_repeated() {
+    const PlaneMotion& old = (*history_)[old_++];
+    return {at_.x + old.to_x - old.from_x, at_.y + old.to_y - old.from_y, old.sagitta};
+}
+
+inline bool ChunkDecoder::give_packed(const Point& to, std::int64_t sagitta, Operation& out) {
     const Point from = at_;
     if (beyond(to.x, coordinate_limit) || beyond(to.y, coordinate_limit))
         return fail("a position is out of range");
@@ -122,6 +112,19 @@ bool ChunkDecoder::give_packed(const Point& to, std::int64_t sagitta, Operation&
         arc.to = to;
         arc.sagitta = sagitta;
     }
+    return true;
+}
+
+bool ChunkDecoder::decode_packed(Operation& out) {
+    const auto [x, y, sagitta] = cursor_.bit_numbers(position_order_, sagitta_order_);
+    if (--packed_left_ == 0) cursor_.end_bits();
+    if (cursor_.bad()) return fail("");
+    const Expected expected = packed_ == Packed::parallel ? expect_beside()
+                              : packed_ == Packed::smooth ? expect_smooth(x, y)
+                                                          : expect_repeated();
+    if (!give_packed({expected.x + x, expected.y + y, at_.z}, expected.sagitta + sagitta, out))
+        return false;
+    if (packed_ == Packed::parallel) go_on_beside();
     return true;
 }
 

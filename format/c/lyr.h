@@ -1,20 +1,18 @@
-// Reads a .lyr file in C99 with nothing but a compiler: no library, no heap. Made for microcontrollers;
-// docs/lyr-format.md gives the format, docs/c-reader.md an example. Packed runs need doubles of IEEE 754
-// that are rounded by each operation: build with -ffp-contract=off where the processor fuses them.
+// Reads a .lyr file in C99 with nothing but a compiler: no library, no heap. For microcontrollers;
+// docs/lyr-format.md gives the format, docs/c-reader.md an example. Packed runs need IEEE doubles,
+// rounded by each operation: build with -ffp-contract=off where the processor fuses them.
 //
 // Contract
 //  1. No operation is given out before the CRC of its chunk was found right, nor a layer's state
 //     before that of its block. After an error the reader stays at it until lyr_seek_layer().
 //  2. LYR_END comes only after the end block was found right: counts, index, and nothing behind it.
-//  3. It accepts and refuses what format/reader.h does, at the same byte, but for numbers of the
-//     metadata, which it hands on; with a buffer of 65536 bytes. A smaller one does for files whose
-//     blocks fit it (else LYR_TOO_LONG).
+//  3. It accepts and refuses what format/reader.h does, at the same byte, but for the text of the
+//     metadata, which it hands on; with a buffer of 65528 bytes. A smaller one (at least
+//     LYR_LEAST_BUFFER) does for files whose blocks have no longer payload (else LYR_TOO_LONG).
 //  4. No input makes it read or write out of bounds, loop, or leave the ranges of its numbers.
 //  5. Coordinates are in quanta, each within +-(2^31 - 1); other numbers are in the file's units.
 //  6. Motions of no length are passed over, and what a later minor version added.
-
-#ifndef LYR_H
-#define LYR_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -23,6 +21,8 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+enum { LYR_LEAST_BUFFER = 36, LYR_HISTORY = 1024 };
 
 typedef enum lyr_status {
     LYR_OK,
@@ -37,25 +37,15 @@ typedef enum lyr_status {
     LYR_NO_SUCH_LAYER,  // lyr_seek_layer() behind the last one
 } lyr_status;
 
-typedef struct lyr_error {
-    lyr_status status;
-    const char* text;       // what is wrong, in English, without the place
-    uint64_t offset;        // where: byte of the file
-    uint32_t layer, chunk;  // from 1, as people count; 0: in none
-    uint32_t whole_layers;  // number of the last whole layer; 0: none is
-} lyr_error;
-
 typedef struct lyr_source {
     // Up to `count` (at least 1) bytes; how many, 0 at the file's end; negative: cannot read.
     int32_t (*read)(void* user, uint8_t* bytes, uint32_t count);
     // To a byte of the file, whose size must be stated; both for lyr_seek_layer() only.
     bool (*seek)(void* user, uint64_t offset);
     uint64_t size;
-    // If not null: each line of the metadata. Escapes (\n, \\) are as in the file.
-    void (*metadata)(void* user, const char* key, size_t key_size, const char* value, size_t size);
-    // If not null: configuration, thumbnails and the like (type 0x80 and above) in pieces. They are
-    // not to be trusted before the last one, of no bytes with none left: then the CRC was right.
-    void (*extra)(void* user, uint8_t type, const uint8_t* bytes, size_t count, size_t left);
+    // If not null: a piece of the metadata (type 1), a thumbnail or the like (0x80 and above), and
+    // how much is left of it. Not to be trusted before the call that reads it came back all right.
+    void (*extra)(void* user, uint8_t type, const uint8_t* bytes, uint32_t count, uint32_t left);
     void* user;
 } lyr_source;
 
@@ -64,14 +54,12 @@ typedef struct lyr_point {
 } lyr_point;
 
 typedef struct lyr_style {
-    uint8_t role;
-    uint32_t width, height, flow;  // 0.1 um, 0.1 um, 0.00001
-    uint32_t speed, acceleration;  // 0.01 mm/s; mm/s^2, 0: the machine's own
+    uint32_t role, width, height, flow;  // 0.1 um, 0.1 um, 0.00001
+    uint32_t speed, acceleration;        // 0.01 mm/s; mm/s^2, 0: the machine's own
 } lyr_style;
 
 typedef struct lyr_setting {
-    uint8_t kind;            // of a heater: 0 bed, 1 chamber, 2 tool
-    uint32_t number, value;  // of heaters: 0.1 deg C, of fans: 0.001
+    uint32_t kind, number, value;  // heaters: 0 bed, 1 chamber, 2 tool; 0.1 deg C. Fans: 0; 0.001
 } lyr_setting;
 
 typedef struct lyr_layer {
@@ -114,73 +102,60 @@ typedef enum lyr_kind {
 typedef struct lyr_operation {
     lyr_kind kind;
     bool hatch, counter_clockwise, wait;  // hatch: a line or travel of one
-    uint8_t heater;
-    uint32_t number, value;
+    uint32_t heater, number, value;
     lyr_point from, to;
     int32_t center_x, center_y;
     int64_t sagitta;
     uint64_t offset;  // byte of the file where it begins
 } lyr_operation;
 
-typedef struct lyr_grid {
-    int64_t a, b, offset, pitch;  // 2^-30, 2^-30, 2^-24 quanta, 2^-24 quanta
-} lyr_grid;
-
-// The rest of a reader's state is its own affair.
-enum { LYR_HISTORY = 1024 };
 typedef struct lyr_motion {
     int32_t from_x, from_y, to_x, to_y;
     int64_t sagitta;
 } lyr_motion;
-typedef struct lyr_course {
-    double start_x, start_y, end_x, end_y, size, curvature;
-} lyr_course;
-typedef struct lyr_decoder {
-    lyr_point head, wipe_from;
-    bool has_path, has_grid, one_way, forward, linked, group_linked, follows;
-    uint8_t packed, run_code, run_left, stage, now, before, two_before, order, orders, bit;
-    const uint8_t* wipe_at;
-    uint32_t wipe_depth, wipe_left, wipe_moves;
-    uint64_t pieces, pieces_left, packed_left, motions, beside;
-    int64_t back, distance, row, row_offset, ends[3][64], last;
-    uint64_t rows_left, group_rows_left, intervals, ends_left, counts[3];
-    double length;
-    lyr_course course;
-} lyr_decoder;
 
+// What stands behind `source` is the reader's own affair.
 typedef struct lyr_reader {
-    lyr_error error;
+    lyr_status status;
+    uint64_t offset;                    // of an error: byte of the file
+    uint32_t whole_layers;              // number of the last whole layer; 0: none is
     uint32_t major, minor, quantum_nm;  // after lyr_open()
     lyr_layer layer;                    // of the last LYR_LAYER
     lyr_style style;                    // as of the operation given out last
-    lyr_grid grid;
+    int64_t grid[4];  // of hatches: a, b, offset, pitch in 2^-30, 2^-30, 2^-24 and 2^-24 quanta
     lyr_source source;
     uint8_t *buffer, where, type;
-    size_t capacity, at, filled, length;
-    const uint8_t *payload, *cursor, *payload_end;
-    bool layer_begins, sought;
-    uint32_t stated_layers, layers, layer_chunks, offsets_crc, index_crc;
-    uint64_t buffer_offset, offset, index_offset;
-    uint64_t layer_operations, chunks, operations, operations_left;
-    lyr_decoder decoder;
+    bool has_head, too_large, sought;
+    uint32_t capacity, length, crc, index_crc, offsets_crc, layers;
+    uint64_t behind, index_offset, chunks, chunks_before, operations, operations_before;
+    const uint8_t* end;
+    struct lyr_place {
+        const uint8_t* cursor;
+        lyr_point head;
+        uint64_t left;          // steps of the operation at hand: motions, pieces, rows
+        uint32_t moves, depth;  // pieces of a wipe that have a length; um
+    } at, wipe;
+    struct lyr_decoder {
+        bool has_path, has_grid, one_way, forward, linked;
+        uint8_t code, orders, bit;
+        uint64_t operations, motions, measured, old, group_rows, intervals, alike, ends_left;
+        double length;
+        int64_t back, distance, row, row_offset, last, ends[64][2];
+    } decoder;
     lyr_motion history[LYR_HISTORY];
 } lyr_reader;
 
 // Reads up to the first layer. The source is copied; the buffer is in use until the last call.
-bool lyr_open(lyr_reader* reader, const lyr_source* source, void* buffer, size_t size);
+bool lyr_open(lyr_reader* reader, const lyr_source* source, void* buffer, uint32_t size);
 // The next operation. False: the end (LYR_END) or an error.
 bool lyr_next(lyr_reader* reader, lyr_operation* operation);
 // Goes by the index: the next operation will be LYR_LAYER of this layer (from 0). The end is then
 // checked without counts and index.
 bool lyr_seek_layer(lyr_reader* reader, uint32_t index);
-// Behind a piece of a wipe: all its pieces are given out again. So the whole way can be added up, and
-// with it how fast the filament is to be drawn back, before the first piece is carried out.
+// Behind a piece of a wipe: all its pieces are given out again. So the whole way can be added up,
+// and with it how fast the filament is to be drawn back, before the first piece is carried out.
 void lyr_wipe_again(lyr_reader* reader);
-// The check of blocks. `before`: that of the bytes in front of these; 0: there are none.
-uint32_t lyr_crc32c(const uint8_t* bytes, size_t count, uint32_t before);
 
 #ifdef __cplusplus
 }
-#endif
-
 #endif

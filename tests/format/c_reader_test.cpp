@@ -8,6 +8,7 @@
 #include <numeric>
 #include <random>
 
+#include "damages.h"
 #include "files.h"
 #include "sample.h"
 #include "small_file.h"
@@ -54,23 +55,13 @@ TEST_CASE("C reader 3: the same operations as in C++, for random prints") {
 TEST_CASE("C reader 1 and 3: the same verdict whatever bit is flipped") {
     const FileBytes file = test::small_file();
     CHECK(difference(file) == "");
-    FileBytes damaged = file;
-    for (std::size_t at = 0; at < file.size(); ++at) {
-        for (int bit = 0; bit < 8; ++bit) {
-            damaged[at] ^= static_cast<std::byte>(1 << bit);
-            INFO("byte " << at << " bit " << bit);
-            REQUIRE(difference(damaged) == "");
-            damaged[at] = file[at];
-        }
-    }
+    test::with_each_bit_flipped(
+        file, [](const FileBytes& damaged, std::size_t) { REQUIRE(difference(damaged) == ""); });
 }
 
 TEST_CASE("C reader 2 and 3: the same verdict wherever the file is cut, and the last whole layer") {
     const FileBytes file = test::small_file();
-    for (std::size_t size = 0; size < file.size(); ++size) {
-        INFO("cut at byte " << size);
-        REQUIRE(difference({file.begin(), file.begin() + static_cast<std::ptrdiff_t>(size)}) == "");
-    }
+    test::with_each_cut(file, [](const FileBytes& cut) { REQUIRE(difference(cut) == ""); });
     FileBytes longer = file;
     longer.push_back(std::byte{0});
     CHECK(difference(longer) == "");
@@ -95,47 +86,22 @@ TEST_CASE("C reader 3 and 4: the same verdict on any byte of any payload, with a
 
 TEST_CASE("C reader 3: blocks that are missing, doubled, swapped or of another type") {
     const FileBytes file = test::small_file();
+    const auto same = [](const FileBytes& bytes, const auto&) { CHECK(difference(bytes) == ""); };
+    test::with_each_block_missing_or_doubled(file, same);
+    test::with_each_two_blocks_swapped(file, same);
     const std::vector<test::Block> blocks = test::split(file);
     for (std::size_t i = 0; i < blocks.size(); ++i) {
-        INFO("block " << i);
-        auto changed = blocks;
-        changed.erase(changed.begin() + static_cast<std::ptrdiff_t>(i));
-        CHECK(difference(test::join(file, changed)) == "");
-        changed = blocks;
-        changed.insert(changed.begin() + static_cast<std::ptrdiff_t>(i), blocks[i]);
-        CHECK(difference(test::join(file, changed)) == "");
         for (const int type : {0x00, 0x06, 0x47, 0x80, 0x81, 0x82, 0xff, 1, 2, 3, 4, 5}) {
-            changed = blocks;
+            INFO("block " << i << " as type " << type);
+            auto changed = blocks;
             changed[i].type = static_cast<std::uint8_t>(type);
             CHECK(difference(test::join(file, changed)) == "");
         }
-        if (i == 0) continue;
-        changed = blocks;
-        std::swap(changed[i], changed[i - 1]);
-        CHECK(difference(test::join(file, changed)) == "");
     }
 }
 
 TEST_CASE("C reader 3 and 4: the same verdict on random operations") {
-    std::mt19937 random(7);
-    const auto pick = [&](int count) {
-        return std::uniform_int_distribution<int>(0, count - 1)(random);
-    };
-    const std::vector<int> codes{0x00, 0x1f, 0x20, 0x33, 0x40, 0x41, 0x42, 0x45, 0x46, 0x47, 0x48,
-                                 0x49, 0x4a, 0x4b, 0x50, 0x51, 0x54, 0x57, 0x58, 0x5b, 0xf3};
-    for (int i = 0; i < 20000; ++i) {
-        FileBytes raw;
-        for (const int byte : {0x50, 1, 0, 0x46, 0x80, 0x80, 0x80, 0x80, 8, 0, 0, 2})
-            raw.push_back(static_cast<std::byte>(byte));
-        const int size = pick(60);
-        for (int k = 0; k < size; ++k)
-            raw.push_back(static_cast<std::byte>(
-                pick(3) == 0 ? codes[static_cast<std::size_t>(pick(static_cast<int>(codes.size())))]
-                : pick(4)    ? pick(16)
-                             : pick(256)));
-        INFO("turn " << i);
-        REQUIRE(difference(test::raw_file(raw, 3)) == "");
-    }
+    test::with_random_operations([](const FileBytes& file) { REQUIRE(difference(file) == ""); });
 }
 
 TEST_CASE("reader: a link of no length leaves the next gap of its row a travel") {
@@ -185,20 +151,19 @@ TEST_CASE("reader: the widest arc is told from one that is wider by a quantum, h
         CHECK_FALSE(verdict(100, 100, sagitta));
 }
 
-TEST_CASE(
-    "C reader 3: a buffer that a block does not fit is said so, a smaller one does for the rest") {
+TEST_CASE("C reader 3: a buffer that a payload does not fit is said so, one that it fits does") {
     const FileBytes file = test::small_file();
     std::size_t longest = 0;
     for (const test::Block& block : test::split(file))
-        if (block.type < 0x80)
-            longest = std::max(longest, block.payload.size() + block_frame_bytes);
-    for (const std::size_t size : {std::size_t{16}, longest - 1, longest, longest + 100}) {
+        if (block.type < 0x80) longest = std::max(longest, block.payload.size());
+    for (const std::size_t size :
+         {std::size_t{LYR_LEAST_BUFFER} - 1, longest - 1, longest, longest + 100, buffer_bytes}) {
         test::Memory memory{file};
         test::CReader c(memory, size);
         c.open();
         while (lyr_next(&c.reader, &c.operation)) {
         }
-        CHECK(c.reader.error.status == (size < longest ? LYR_TOO_LONG : LYR_END));
+        CHECK(c.reader.status == (size < longest ? LYR_TOO_LONG : LYR_END));
     }
 }
 
@@ -216,17 +181,17 @@ TEST_CASE("C reader: it starts at any layer, and goes back") {
         CHECK(c.operation.number == layer);
         std::uint64_t left = 1;
         while (lyr_next(&c.reader, &c.operation)) ++left;
-        CHECK(c.reader.error.status == LYR_END);
+        CHECK(c.reader.status == LYR_END);
         CHECK(left ==
               std::accumulate(operations.begin() + layer, operations.end(), std::uint64_t{0}));
     }
     CHECK_FALSE(lyr_seek_layer(&c.reader, 3));
-    CHECK(c.reader.error.status == LYR_NO_SUCH_LAYER);
+    CHECK(c.reader.status == LYR_NO_SUCH_LAYER);
     CHECK(lyr_seek_layer(&c.reader, 0));
     memory.bytes = memory.bytes.first(file.size() - 1);
     c.reader.source.size = file.size() - 1;
     CHECK_FALSE(lyr_seek_layer(&c.reader, 0));
-    CHECK(c.reader.error.status == LYR_CUT_SHORT);
+    CHECK(c.reader.status == LYR_CUT_SHORT);
 }
 
 TEST_CASE("C reader: a wipe is given out again without touching the source") {
@@ -261,38 +226,33 @@ TEST_CASE("C reader: a wipe is given out again without touching the source") {
 TEST_CASE("C reader: metadata, configuration and thumbnails are handed on") {
     struct Kept {
         test::Memory memory;
-        std::string metadata;
         std::vector<std::pair<int, std::string>> extras;
         bool open = false;
     };
     const FileBytes file = test::small_file();
-    Kept kept{{file}, "", {}};
+    Kept kept{{file}, {}};
     lyr_source source = kept.memory.source();
     source.user = &kept;
     source.read = [](void* user, std::uint8_t* out, std::uint32_t count) {
         return test::Memory::read(&static_cast<Kept*>(user)->memory, out, std::min(count, 50u));
     };
-    source.metadata = [](void* user, const char* key, std::size_t key_size, const char* value,
-                         std::size_t size) {
-        static_cast<Kept*>(user)->metadata +=
-            std::string(key, key_size) + ':' + std::string(value, size) + '\n';
-    };
-    source.extra = [](void* user, std::uint8_t type, const std::uint8_t* bytes, std::size_t count,
-                      std::size_t left) {
+    source.extra = [](void* user, std::uint8_t type, const std::uint8_t* bytes, std::uint32_t count,
+                      std::uint32_t left) {
         auto& out = *static_cast<Kept*>(user);
         if (!out.open) out.extras.push_back({type, ""});
-        if (count > 0) out.extras.back().second.append(reinterpret_cast<const char*>(bytes), count);
+        out.extras.back().second.append(reinterpret_cast<const char*>(bytes), count);
         out.open = left > 0;
     };
     std::vector<std::byte> buffer(400);
     lyr_reader reader;
-    REQUIRE(lyr_open(&reader, &source, buffer.data(), buffer.size()));
-    CHECK(kept.metadata.starts_with("source:part.step\n"));
-    CHECK(kept.metadata.find("layers:3\n") != std::string::npos);
-    REQUIRE(kept.extras.size() == 2);
-    CHECK(kept.extras[0] == std::pair<int, std::string>(0x82, "layer.height = 0.2\n"));
-    CHECK(kept.extras[1].first == 0x81);
-    CHECK(kept.extras[1].second.size() == 11);
+    REQUIRE(lyr_open(&reader, &source, buffer.data(), 400));
+    REQUIRE(kept.extras.size() == 3);
+    CHECK(kept.extras[0].first == 1);
+    CHECK(kept.extras[0].second.starts_with("source=part.step\n"));
+    CHECK(kept.extras[0].second.find("layers=3\n") != std::string::npos);
+    CHECK(kept.extras[1] == std::pair<int, std::string>(0x82, "layer.height = 0.2\n"));
+    CHECK(kept.extras[2].first == 0x81);
+    CHECK(kept.extras[2].second.size() == 11);
 }
 
 TEST_CASE("C reader: its square root is rounded as IEEE 754 says") {

@@ -110,7 +110,7 @@ Reference read_whole(const Print& print) {
         out.positions.push_back(reader->position());
         out.c_operations.push_back(c.operation);
     }
-    if (reader->error() || lyr_next(&c.reader, &c.operation) || c.reader.error.status != LYR_END)
+    if (reader->error() || lyr_next(&c.reader, &c.operation) || c.reader.status != LYR_END)
         std::exit(2);
     out.blocks = blocks_of(print.bytes());
     return out;
@@ -127,18 +127,16 @@ public:
             memory.at = 0;
             if (!c.open()) return true;
         } else {
-            // As it was behind the layer's own block; what it had read ahead is read again.
+            // As it was behind the layer's own block.
             c.reader = reference_.c_readers[static_cast<std::size_t>(start_)];
             next = reference_.layers[static_cast<std::size_t>(start_)] + 1;
-            memory.at = static_cast<std::size_t>(c.reader.buffer_offset) + c.reader.at;
+            memory.at = static_cast<std::size_t>(c.reader.behind);
             c.reader.source.user = &memory;
             c.reader.buffer = reinterpret_cast<std::uint8_t*>(c.buffer.data());
-            c.reader.buffer_offset = memory.at;
-            c.reader.at = c.reader.filled = 0;
         }
         for (; lyr_next(&c.reader, &c.operation); ++next)
             if (!is_due(next) || !same(c.operation, reference_.c_operations[next])) return false;
-        return !is_due(next) && c.reader.error.status != LYR_END;
+        return !is_due(next) && c.reader.status != LYR_END;
     }
 
     bool found_in_cpp() const {

@@ -8,6 +8,12 @@ static int32_t read_file(void* user, uint8_t* bytes, uint32_t count) {
     return ferror(file) ? -1 : (int32_t)got;
 }
 
+static const char* const wrong[] = {
+    [LYR_UNREADABLE] = "cannot read", [LYR_CUT_SHORT] = "cut short",
+    [LYR_NO_LYR] = "no .lyr file",    [LYR_DAMAGED] = "damaged",
+    [LYR_UNSUPPORTED] = "too new",    [LYR_TOO_LONG] = "a block is too long",
+    [LYR_NONSENSE] = "makes no sense"};
+
 int main(int count, char** arguments) {
     static uint8_t buffer[65536];
     static lyr_reader reader;
@@ -22,8 +28,8 @@ int main(int count, char** arguments) {
                    operation.to.z * (reader.quantum_nm / 1e6));
     }
     fclose(file);
-    if (reader.error.status == LYR_END) return 0;
-    printf("%s at byte %llu; the last whole layer is %u\n", reader.error.text,
-           (unsigned long long)reader.error.offset, (unsigned)reader.error.whole_layers);
+    if (reader.status == LYR_END) return 0;
+    printf("%s at byte %llu; the last whole layer is %u\n", wrong[reader.status],
+           (unsigned long long)reader.offset, (unsigned)reader.whole_layers);
     return 1;
 }
