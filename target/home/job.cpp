@@ -6,6 +6,7 @@
 #include "target/gpio/gpiod_chip.h"
 #include "target/gpio/gpiod_inputs.h"
 #include "target/home/simulated_machine.h"
+#include "target/moves/machine.h"
 #include "target/run/real_time.h"
 
 namespace lyr::home {
@@ -110,7 +111,9 @@ Status home_before_print(const config::Printer& printer, gpio::GpioChip& chip, g
     Mover mover(printer, chip, clock, inputs->get(), &signals);
     const Result<Homed> homed = home(mover, printer, homable(printer));
     if (!homed) return homed.error();
-    return travel(mover, printer, homed->head, start_of(printer));
+    motion::Point start = start_of(printer);
+    if (const auto bed = moves::bed_of(printer)) start.z += bed->lift_mm(start);
+    return travel(mover, printer, homed->head, start);
 }
 
 std::string text_of(const Report& report) {
