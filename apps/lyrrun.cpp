@@ -46,6 +46,7 @@ constexpr Program program{
     "  lyrrun part.lyr --simulate --faults faults.txt     see what the guards do about faults\n"
     "  lyrrun --printer printer.toml --home               find where the head is\n"
     "  lyrrun --printer printer.toml --jog x=10,z=5       and move it by so much\n"
+    "  lyrrun --printer printer.toml --calibrate mesh     measure how high the bed is where\n"
     "\n"
     "A print takes the whole path from the file and starts with the head at start_mm of the\n"
     "printer, which a printer with endstops finds by itself. Ctrl-C brings the head to rest on its "
@@ -200,18 +201,22 @@ Status print(const Arguments& arguments, const config::Printer& printer) {
 // What makes no sense together.
 Status check_together(const Arguments& arguments) {
     if (arguments.tune && arguments.place.given())
-        return usage("--tune goes without --home and --jog");
+        return usage("--tune goes without --home, --jog and --calibrate");
+    if (arguments.place.calibrate && (arguments.place.home || arguments.place.jog_mm))
+        return usage("--calibrate homes by itself: it goes without --home and --jog");
     if (arguments.place.given()) {
         if (!arguments.lyr_path.empty() || !arguments.trace_path.empty() || arguments.json ||
             arguments.no_heat)
-            return usage("--home and --jog go without a print, --trace, --json and --no-heat");
+            return usage(
+                "--home, --jog and --calibrate go without a print, --trace, --json and --no-heat");
     } else if (arguments.tune) {
         if (!arguments.lyr_path.empty() || !arguments.trace_path.empty() || arguments.json ||
             arguments.no_heat)
             return usage("--tune goes without a print, --trace, --json and --no-heat");
     } else if (arguments.lyr_path.empty()) {
         return usage(
-            "print is required, the .lyr file that stepc wrote, or --tune, --home or --jog");
+            "print is required, the .lyr file that stepc wrote, or --tune, --home, --jog or "
+            "--calibrate");
     }
     if (!arguments.simulate && !arguments.faults_path.empty())
         return usage("--faults needs --simulate");

@@ -1,6 +1,10 @@
 #include "apps/lyrrun_place.h"
 
+#include <algorithm>
+
 #include "apps/files.h"
+#include "apps/progress_line.h"
+#include "base/replace_file.h"
 #include "base/text.h"
 
 namespace lyr::command_line {
@@ -57,9 +61,66 @@ void add_place_options(CLI::App& app, PlaceArguments& arguments) {
         },
         "Move the head by so much from the start of a print, in place of one; homes first where "
         "the printer can");
+    add_text(
+        app, "--calibrate", "[WHAT]",
+        [&arguments](const std::string& value) -> std::optional<std::string> {
+            arguments.calibrate.emplace();
+            const auto& names = home::calibration_names;
+            const auto name = std::find(names.begin(), names.end(), value);
+            if (name != names.end())
+                arguments.calibrate->push_back(
+                    static_cast<home::Calibration>(name - names.begin()));
+            else if (!value.empty())
+                return "probe, delta or mesh";
+            return std::nullopt;
+        },
+        "Measure with the probe its own height, a delta's frame or the bed's heights (probe, "
+        "delta, "
+        "mesh), and keep it in the printer's calibration_file; without WHAT a delta's frame and "
+        "the heights")
+        ->expected(0, 1);
 }
 
+namespace {
+
+Status keep(const config::Printer& printer) {
+    Result<ReplaceFile> file = ReplaceFile::open(printer.calibration_file);
+    if (!file) return file.error();
+    file->write(home::calibration_toml(printer));
+    return file->commit();
+}
+
+Status calibrate(const Program& program, std::vector<home::Calibration> wanted, home::Job job) {
+    if (wanted.empty()) {
+        if (job.printer.kinematics == config::Kinematics::delta)
+            wanted.push_back(home::Calibration::delta);
+        wanted.push_back(home::Calibration::mesh);
+    }
+    std::string text = '"' + job.printer.name + '"' + (job.simulate ? ", simulated\n" : "\n");
+    ProgressLine line;
+    for (const home::Calibration what : wanted) {
+        const std::string name(home::calibration_names[static_cast<std::size_t>(what)]);
+        const auto found = home::calibrate(job, what, [&](std::size_t done, std::size_t of) {
+            line.show(name + ": place " + std::to_string(done + 1) + " of " + std::to_string(of));
+        });
+        line.clear();
+        if (!found) return found.error();
+        show(program, found->warnings);
+        text += found->text;
+        job.printer = found->printer;
+    }
+    if (job.printer.calibration_file.empty())
+        return tell(text +
+                    "The printer's file names no calibration_file to keep this in; it is\n\n" +
+                    home::calibration_toml(job.printer));
+    if (const Status kept = keep(job.printer); !kept) return kept;
+    return tell(text + "  kept in " + job.printer.calibration_file + '\n');
+}
+
+}  // namespace
+
 Status work_place(const Program& program, const PlaceArguments& arguments, const home::Job& job) {
+    if (arguments.calibrate) return calibrate(program, *arguments.calibrate, job);
     home::AxisSet axes = arguments.home.value_or(home::AxisSet());
     if (axes.none()) axes = home::homable(job.printer);
     if (arguments.home && axes.none())

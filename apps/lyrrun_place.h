@@ -5,15 +5,16 @@
 #include <optional>
 
 #include "apps/command_line.h"
-#include "target/home/job.h"
+#include "target/home/calibration.h"
 
 namespace lyr::command_line {
 
 struct PlaceArguments {
     std::optional<home::AxisSet> home;  // empty: all that can be
     std::optional<motion::Point> jog_mm;
+    std::optional<std::vector<home::Calibration>> calibrate;  // empty: all that the printer needs
 
-    bool given() const { return home || jog_mm; }
+    bool given() const { return home || jog_mm || calibrate; }
 };
 
 void add_place_options(CLI::App& app, PlaceArguments& arguments);

@@ -73,6 +73,8 @@ struct SimulatedMachine {
     std::array<double, 2> bed_tilt{};  // mm of height for each mm of x and of y
     std::vector<Bump> bumps;
     double probe_noise_mm = 0;  // the probe's contact is off by up to so much
+    // None: as the printer's file says, without what was calibrated.
+    std::optional<std::array<double, 3>> probe_offset_mm;
     // Of a delta: by how much the towers are not as the file says.
     std::array<double, 3> arm_error_mm{}, radius_error_mm{}, angle_error_deg{}, endstop_error_mm{};
 };

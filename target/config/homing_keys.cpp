@@ -175,6 +175,9 @@ void append_simulated(std::vector<Key>& keys) {
     keys.push_back(number("simulate.probe_noise_mm", {0, 1}, [](Draft& draft, double value) {
         draft.printer.simulated.probe_noise_mm = value;
     }));
+    keys.push_back(
+        list<3>("simulate.probe_offset_mm", "[x, y, z]", {-500, 500},
+                [](Draft& draft, const auto& v) { draft.printer.simulated.probe_offset_mm = v; }));
     const auto towers = [&](const char* name, std::array<double, 3> SimulatedMachine::*field) {
         keys.push_back(list<3>(name, "of three", {-20, 20}, [field](Draft& draft, const auto& v) {
             draft.printer.simulated.*field = v;
@@ -203,6 +206,14 @@ void append_mesh_problems(const BedMesh& mesh, Problems& problems) {
 }
 
 }  // namespace
+
+bool is_calibration_key(std::string_view path) {
+    constexpr std::array<std::string_view, 10> keys{
+        "delta.radius_mm",   "delta.tower_angle_deg", "axis.x.endstop_mm", "axis.y.endstop_mm",
+        "axis.z.endstop_mm", "probe.offset_mm",       "mesh.area_mm",      "mesh.points",
+        "mesh.heights_mm",   "mesh.fade_mm"};
+    return std::find(keys.begin(), keys.end(), path) != keys.end();
+}
 
 void append_homing_keys(std::vector<Key>& keys) {
     for (std::size_t axis = axis_x; axis <= axis_z; ++axis) append_endstop(keys, axis);

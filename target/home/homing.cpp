@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/text.h"
+#include "target/home/delta_fit.h"
 #include "target/home/touch.h"
 #include "target/moves/machine.h"
 
@@ -16,17 +17,9 @@ bool is_delta(const config::Printer& printer) {
     return printer.kinematics == config::Kinematics::delta;
 }
 
-// How high a carriage is over the head in the middle.
-double arm_height_mm(const config::DeltaFrame& frame, std::size_t tower) {
-    return std::sqrt((frame.arm_mm[tower] - frame.radius_mm[tower]) *
-                     (frame.arm_mm[tower] + frame.radius_mm[tower]));
-}
-
 double endstop_mm(const config::Printer& printer, std::size_t axis) {
     const config::Endstop& endstop = printer.endstops[axis];
-    if (is_delta(printer))
-        return endstop.at_mm.value_or(printer.axes[axis_z].max_mm) +
-               arm_height_mm(printer.delta, axis);
+    if (is_delta(printer)) return carriage_endstop_mm(printer, axis);
     const config::Axis& limits = printer.axes[axis];
     return endstop.at_mm.value_or(endstop.at_high_end ? limits.max_mm : limits.min_mm);
 }

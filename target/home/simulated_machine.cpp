@@ -17,6 +17,13 @@ constexpr double ns_per_ms = 1e6;
 // A contact that bounces opens and closes so often.
 constexpr double bounce_ms = 0.2;
 
+config::Printer uncalibrated(const config::Printer& printer) {
+    config::Printer own = printer.uncalibrated ? *printer.uncalibrated : printer;
+    if (own.probe && own.simulated.probe_offset_mm)
+        own.probe->offset_mm = *own.simulated.probe_offset_mm;
+    return own;
+}
+
 config::Printer true_printer(config::Printer printer) {
     const config::SimulatedMachine& truth = printer.simulated;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -61,10 +68,10 @@ std::array<double, 3> endstops_of(const config::Printer& printer) {
 
 SimulatedMachine::SimulatedMachine(const config::Printer& printer,
                                    const std::vector<thermal::Fault>& faults)
-    : printer_(printer),
-      truth_(moves::kinematics_of(true_printer(printer))),
-      endstops_mm_(endstops_of(printer)),
-      origin_mm_(motion::motors_at(truth_, first_place(printer))),
+    : printer_(uncalibrated(printer)),
+      truth_(moves::kinematics_of(true_printer(printer_))),
+      endstops_mm_(endstops_of(printer_)),
+      origin_mm_(motion::motors_at(truth_, first_place(printer_))),
       faults_(faults),
       has_(contacts_of(printer)),
       inputs_(has_.count(), clock_),

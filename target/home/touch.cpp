@@ -17,10 +17,7 @@ std::string name_of(const Target& target) {
 }
 
 Diagnostic failed(const Target& target, const std::string& what) {
-    return {Severity::error,
-            ExitStatus::machine,
-            name_of(target) + what + "; the printer is not homed",
-            {}};
+    return {Severity::error, ExitStatus::machine, name_of(target) + what, {}};
 }
 
 Diagnostic never(const Target& target, double reach_mm) {
@@ -43,12 +40,14 @@ Diagnostic differ(const Target& target, double off_mm) {
 
 }  // namespace
 
-ByAxes::Positions ByAxes::way_mm(const motion::StepCounts& counts) const {
-    std::array<double, 3> motors_mm{};
+ByAxes::Positions ByAxes::after(const Positions& from_mm, const motion::StepCounts& counts) const {
+    const motion::Kinematics kinematics = moves::kinematics_of(machine_);
+    std::array<double, 3> motors_mm =
+        motion::motors_at(kinematics, {from_mm[0], from_mm[1], from_mm[2]});
     for (std::size_t i = 0; i < motors_mm.size(); ++i)
-        motors_mm[i] = static_cast<double>(counts[i]) / machine_.axes[i].steps_per_mm;
-    const motion::Point way = motion::head_at(moves::kinematics_of(machine_), motors_mm);
-    return {way.x, way.y, way.z};
+        motors_mm[i] += static_cast<double>(counts[i]) / machine_.axes[i].steps_per_mm;
+    const motion::Point at = motion::head_at(kinematics, motors_mm);
+    return {at.x, at.y, at.z};
 }
 
 Result<Moved> ByAxes::move(const Positions& way_mm, double speed_mm_s, Contacts watched) {
@@ -58,8 +57,7 @@ Result<Moved> ByAxes::move(const Positions& way_mm, double speed_mm_s, Contacts 
     if (motion::length_of(line) <= motion::Planner::shortest_mm) return Moved();
     Result<Moved> moved = mover_.run(machine_, std::array{motion::Move{line, speed_mm_s}}, watched);
     if (!moved) return moved;
-    const Positions moved_mm = this->way_mm(moved->counts);
-    for (std::size_t i = 0; i < at_mm_.size(); ++i) at_mm_[i] += moved_mm[i];
+    at_mm_ = after(at_mm_, moved->counts);
     return moved;
 }
 
@@ -82,8 +80,11 @@ Result<ByAxes::Positions> ByAxes::touch(std::span<const Target> targets, double 
         if (moved->contacts().none()) return never(left.front(), reach_mm);
         for (const Target& target : left) {
             left_mm[target.axis] -= std::abs(at_mm_[target.axis] - from_mm[target.axis]);
-            if (const auto& counts = moved->at_contact[target.contact])
-                touched_mm[target.axis] = from_mm[target.axis] + this->way_mm(*counts)[target.axis];
+            const auto& counts = moved->at_contact[target.contact];
+            if (!counts) continue;
+            const Positions there_mm = after(from_mm, *counts);
+            if (targets.size() == 1) touched_mm = there_mm;
+            touched_mm[target.axis] = there_mm[target.axis];
         }
         std::erase_if(left, [&](const Target& target) {
             return moved->at_contact[target.contact].has_value();
@@ -100,7 +101,6 @@ Status ByAxes::check_open(std::span<const Target> targets) {
     return Done{};
 }
 
-// Leaves the contacts, to back_off_mm from the places given, and comes again.
 Result<ByAxes::Positions> ByAxes::touch_slowly(std::span<const Target> targets,
                                                const Positions& leave_mm) {
     Positions way_mm{};

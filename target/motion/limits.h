@@ -39,7 +39,7 @@ struct Limits {
     double extruder_jump_mm_s = 1;
     double jerk_mm_s3 = 0;  // along the path; 0: no limit
     BedShape bed{};
-    double bed_jump_mm_s = 0.5;
+    double bed_jump_mm_s = 1;
 };
 
 struct Move {

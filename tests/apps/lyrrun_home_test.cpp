@@ -88,3 +88,59 @@ TEST_CASE("lyrrun --home: options that make no sense together, and printers that
     check_failure(folder.run("lyrrun --home --simulate"), "lyrrun", 7, "axis.x.endstop");
     check_failure(folder.run("lyrrun --home --printer p.toml"), "lyrrun", 7, "axis.x.step");
 }
+
+TEST_CASE("lyrrun --calibrate: keeps what was found beside the printer, and a print follows it") {
+    const Folder folder("calibrate");
+    const std::string head = "name = \"crooked\"\ncalibration_file = \"found.toml\"\n";
+    const std::string tail =
+        "[probe]\ninput = 9\noffset_mm = [3, -4, 1.5]\n[mesh]\npoints = [3, 4]\n"
+        "area_mm = [10, 10, 110, 110]\n[simulate]\nbed_tilt = [0.002, 0.001]\n"
+        "bumps = [[60, 60, 0.2, 40]]\n";
+    folder.write("p.toml", head + axes + tail);
+    const Ended found = folder.run("lyrrun --calibrate mesh --simulate --printer p.toml");
+    CHECK(found.status == 0);
+    CHECK(found.err.empty());
+    CHECK(found.out.find("the bed is from 0.0") != std::string::npos);
+    CHECK(found.out.find("kept in found.toml") != std::string::npos);
+    CHECK(text_of(folder / "found.toml").find("heights_mm = [") != std::string::npos);
+    const std::string print = write_print("followed", {draw_square, draw_arcs}, {0, false, 60, 60});
+    const Ended printed = folder.run("lyrrun " + print + " --simulate --printer p.toml");
+    CHECK(printed.status == 0);
+    CHECK(printed.out.find("within half a microstep everywhere") != std::string::npos);
+    // With z by an endstop the probe's own height can be found, and the mesh stays.
+    CHECK(folder.run("lyrrun --calibrate probe --simulate --printer p.toml").status == 0);
+    const std::string kept = text_of(folder / "found.toml");
+    CHECK(kept.find("heights_mm") != std::string::npos);
+    CHECK(kept.find("offset_mm = [3.0000, -4.0000, ") != std::string::npos);
+}
+
+TEST_CASE("lyrrun --calibrate: the sample delta, perturbed, from the outside") {
+    const Folder folder("calibrate-delta");
+    folder.write("p.toml", text_of(LYR_FIXTURES "/printers/delta.toml") +
+                               "[simulate]\nradius_error_mm = [0.5, 0.5, 0.5]\n"
+                               "endstop_error_mm = [0.3, 0, -0.2]\n");
+    const Ended first = folder.run("lyrrun --calibrate delta --simulate --printer p.toml");
+    CHECK(first.status == 0);
+    CHECK(first.out.find("the bed was found up to 0.") != std::string::npos);
+    CHECK(first.out.find("with this frame it is 0.00") != std::string::npos);
+    const Ended second = folder.run("lyrrun --calibrate delta --simulate --printer p.toml");
+    CHECK(second.out.find("the bed was found up to 0.00") != std::string::npos);
+}
+
+TEST_CASE("lyrrun --calibrate: without a file to keep it in the TOML is on standard output") {
+    const Folder folder("calibrate-shown");
+    folder.write("p.toml", axes + "[probe]\ninput = 9\n[mesh]\npoints = [2, 2]\n");
+    const Ended shown = folder.run("lyrrun --calibrate --simulate --printer p.toml");
+    CHECK(shown.status == 0);
+    CHECK(shown.out.find("[mesh]\narea_mm = [0.0000, 0.0000, 120.0000, 120.0000]") !=
+          std::string::npos);
+    check_failure(folder.run("lyrrun --calibrate mash --simulate --printer p.toml"), "lyrrun", 2,
+                  "probe, delta or mesh");
+    check_failure(folder.run("lyrrun --calibrate delta --simulate --printer p.toml"), "lyrrun", 7,
+                  "kinematics");
+    folder.write("f.txt", "20 dead probe\n");
+    check_failure(folder.run("lyrrun --calibrate mesh --simulate --printer p.toml --faults f.txt"),
+                  "lyrrun", 7, "the probe has not triggered within");
+    check_failure(folder.run("lyrrun --calibrate --home --simulate --printer p.toml"), "lyrrun", 2,
+                  "homes by itself");
+}

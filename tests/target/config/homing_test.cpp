@@ -93,12 +93,18 @@ TEST_CASE("printer 7: the calibration file stands above the printer's file, and 
     const Result<Printer> found = calibrate("[axis.y]\nendstop_mm = 203.25\n");
     REQUIRE(found.ok());
     CHECK(*found->endstops[1].at_mm == 203.25);
+    CHECK(*found->uncalibrated->endstops[1].at_mm == 203.5);
+    CHECK(found->calibrated == std::vector<std::string>{"axis.y.endstop_mm"});
     CHECK(found->calibration_file == (folder / "found.toml").string());
     const Result<Printer> slip = calibrate("[axis.y]\nendstp_mm = 203.25\n");
     REQUIRE_FALSE(slip.ok());
     CHECK(slip.error().where.file == (folder / "found.toml").string());
     CHECK(slip.error().where.line == 2);
     CHECK_FALSE(calibrate("calibration_file = \"other.toml\"\n").ok());
+    const Result<Printer> foreign = calibrate("[axis.y]\nendstop_mm = 1\ninvert = true\n");
+    REQUIRE_FALSE(foreign.ok());
+    CHECK(foreign.error().where.line == 3);
+    CHECK(foreign.error().message.find("not a key of a calibration") != std::string::npos);
     CHECK_FALSE(calibrate("[axis.y\n").ok());
     std::filesystem::remove_all(folder);
 }
