@@ -159,9 +159,12 @@ Status simulate(const Arguments& arguments, const config::Printer& printer) {
     const SignalWatch watch(program.name);
     Result<std::vector<thermal::Fault>> faults = read_faults(arguments, printer);
     if (!faults) return faults.error();
+    std::string homing;
     if (home::homes_before_print(printer)) {
         const auto homed = home::home({printer, true, *faults}, home::homable(printer), {});
         if (!homed) return homed.error();
+        homing = home::text_of(*homed);
+        homing.resize(homing.find('\n') + 1);  // where the head was then is of no use any more
     }
     ProgressLine line;
     run::SimulationJob job{arguments.lyr_path, printer, {}, shown_on(line), {}};
@@ -172,7 +175,8 @@ Status simulate(const Arguments& arguments, const config::Printer& printer) {
     line.clear();
     if (!report) return report.error();
     show(program, report->notes);
-    const std::string text = arguments.json ? run::json_of(*report) : run::text_of(*report);
+    const std::string text =
+        arguments.json ? run::json_of(*report) : run::text_of(*report) + homing;
     if (const Status told = tell(text, {{"the trace", arguments.trace_path}}); !told) return told;
     if (report->within_limits()) return Done{};
     return Diagnostic{Severity::error,

@@ -111,10 +111,6 @@ Result<Moved> Mover::run(const config::Printer& machine, std::span<const motion:
     if (watch_)
         if (Status begun = watch_->begin(watched, stop); !begun) return begun.error();
     const motion::StepCounts before = tally_.counts();
-    // The executor takes all lines but enable for inactive.
-    const gpio::LineMask enable = run::line_layout(machine).enable;
-    if (Status set = tally_.write(gpio::all_lines(tally_.line_count()), enable); !set)
-        return set.error();
     run::ExecutorTiming timing = run::executor_timing(machine);
     timing.braking_ns = braking_ns(machine, moves);
     PolledClock polled(clock_, watch_ && !signals_ ? &*watch_ : nullptr);
@@ -122,6 +118,10 @@ Result<Moved> Mover::run(const config::Printer& machine, std::span<const motion:
     const Result<bool> executed =
         signals_ ? execute_beside(executor, *events, stop) : execute(executor, *events, stop);
     if (!executed) return executed.error();
+    // Whoever writes next takes all lines but enable for inactive.
+    const gpio::LineMask enable = run::line_layout(machine).enable;
+    if (Status rests = tally_.write(gpio::all_lines(tally_.line_count()), enable); !rests)
+        return rests.error();
     return outcome(before);
 }
 

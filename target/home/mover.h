@@ -5,7 +5,8 @@
 //  1. run() makes the moves from rest to rest. A watched contact that closes brings the machine to rest on its path;
 //     the result says which closed, and where the motors were when each was first touched.
 //  2. Counts of a result are in microsteps since the begin of that run.
-//  3. SIGINT and the like bring the machine to rest and end with status stopped; all lines are as they were.
+//  3. SIGINT and the like bring the machine to rest and end with status stopped. After a run the motors are on, and all
+//     lines but enable inactive, as the executor of a print expects them.
 //  4. On a board the lines are written by a thread of high priority and this one watches; with virtual time both are
 //     done by this one, step by step.
 //  5. All steps of a run are computed before it begins: 16 bytes an edge.

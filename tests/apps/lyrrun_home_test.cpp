@@ -73,7 +73,9 @@ TEST_CASE("lyrrun: a print is homed first, unless the printer says not to") {
         folder.write("f.txt", faults);
         return folder.run("lyrrun " + print + " --simulate --printer p.toml --faults f.txt");
     };
-    CHECK(simulated("", "").status == 0);
+    const Ended homed = simulated("", "");
+    CHECK(homed.status == 0);
+    CHECK(homed.out.find("homed xyz in ") != std::string::npos);
     check_failure(simulated("", "0 dead x\n"), "lyrrun", 7, "endstop x has not triggered");
     CHECK(simulated("homing.before_print = false\n", "0 dead x\n").status == 0);
 }
