@@ -12,13 +12,16 @@
 //  4. No two lines of a Printer are the same line of the same chip.
 //  5. known_keys() lists every key that a file may have, "axis.*." standing for each axis.
 //  6. No input makes it crash.
-//  7. A delta's arms reach the whole of its reach_mm, at flattest_arm_share of their length at the most, and
+//  7. A file that calibration_file names has some of the same keys (is_calibration_key()), which stand above those of the
+//     printer's file; it need not be there yet. A name without a slash is one beside the printer's file.
+//  8. A delta's arms reach the whole of its reach_mm, at flattest_arm_share of their length at the most, and
 //     its start lies within.
 
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -27,6 +30,7 @@
 
 #include "base/diagnostic.h"
 #include "target/config/heater.h"
+#include "target/config/homing.h"
 
 namespace lyr::config {
 
@@ -88,6 +92,15 @@ struct Printer {
     std::array<Axis, axis_count> axes;
     std::array<std::optional<Heater>, heater_count> heaters;
     std::optional<Fan> part_fan;
+    std::array<Endstop, 3> endstops;  // of x, y and z, or of a delta's towers
+    Homing homing;
+    std::optional<Probe> probe;
+    BedMesh mesh;
+    SimulatedMachine simulated;
+    std::string calibration_file;  // empty: none
+    // What the file says by itself, and which keys of the calibration stand above it.
+    std::shared_ptr<const Printer> uncalibrated{};
+    std::vector<std::string> calibrated{};
 };
 
 // A middling Cartesian printer without lines and with room for any part, to simulate without a file.
@@ -98,6 +111,9 @@ Result<Printer> read_printer(const std::string& path);
 Result<Printer> parse_printer(std::string_view text, const std::string& file);
 
 std::vector<std::string> known_keys();
+
+// What may be in a calibration file.
+bool is_calibration_key(std::string_view path);
 
 // The fastest that the motor of an axis ever moves, in mm of its steps_per_mm: a belt of a CoreXY follows
 // two axes, a carriage of a delta is fastest where its arm is flattest.

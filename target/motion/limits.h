@@ -11,7 +11,10 @@
 //     deviation, or, if that is smaller, one that touches no further away than half of the shorter
 //     move (a curve given as many short lines). Where the tangents agree there is no limit but the
 //     moves' own.
-//  4. The extruder's speed does not jump by more than extruder_jump_mm_s at a corner. Between a
+//  4. Over a crooked bed z moves too: by the slope for each mm of the path, faster and slower with the bed's twist and
+//     with the arc's turn. That and z's own motion keep the limits of z, with half of its acceleration for changes of
+//     speed and half for the rest. At the edges of cells its speed jumps by no more than bed_jump_mm_s.
+//  5. The extruder's speed does not jump by more than extruder_jump_mm_s at a corner. Between a
 //     move of the extruder alone and any other the machine stops.
 
 #pragma once
@@ -20,6 +23,7 @@
 #include <cstdint>
 
 #include "base/diagnostic.h"
+#include "target/motion/bed_mesh.h"
 #include "target/motion/path.h"
 
 namespace lyr::motion {
@@ -34,6 +38,8 @@ struct Limits {
     double junction_deviation_mm = 0.02;
     double extruder_jump_mm_s = 1;
     double jerk_mm_s3 = 0;  // along the path; 0: no limit
+    BedShape bed{};
+    double bed_jump_mm_s = 1;
 };
 
 struct Move {

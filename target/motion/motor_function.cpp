@@ -15,6 +15,19 @@ constexpr double instant_s = 1e-12;
 // bounds needs it, reach is checked before.
 constexpr double least_height_share = 0.05;
 
+Sample product(const Sample& a, const Sample& b) {
+    return {a.position * b.position, a.speed * b.position + a.position * b.speed,
+            a.acceleration * b.position + 2 * a.speed * b.speed + a.position * b.acceleration};
+}
+
+// Sizes of a function and of its first three derivatives.
+using Sizes = std::array<double, 4>;
+
+Sizes product(const Sizes& a, const Sizes& b) {
+    return {a[0] * b[0], a[1] * b[0] + a[0] * b[1], a[2] * b[0] + 2 * a[1] * b[1] + a[0] * b[2],
+            a[3] * b[0] + 3 * a[2] * b[1] + 3 * a[1] * b[2] + a[0] * b[3]};
+}
+
 }  // namespace
 
 Instant Instant::after(double time_s) const {
@@ -23,7 +36,7 @@ Instant Instant::after(double time_s) const {
     return {ns + static_cast<std::int64_t>(whole_ns), sum_ns - whole_ns};
 }
 
-MotorFunction::MotorFunction(const Taps& taps, bool is_carriage) : is_carriage_(is_carriage) {
+MotorFunction::MotorFunction(const Taps& taps, bool in_space) : in_space_(in_space) {
     for (const Tap& tap : taps) cursors_.push_back({tap, 0, 0});
 }
 
@@ -33,10 +46,12 @@ MotorFunction MotorFunction::sum(const Taps& taps, double start_steps) {
     return function;
 }
 
-MotorFunction MotorFunction::carriage(const Taps& taps, const Delta::Tower& tower,
-                                      double steps_per_mm, double start_mm) {
+MotorFunction MotorFunction::in_space(const Taps& taps, const std::optional<Delta::Tower>& tower,
+                                      std::shared_ptr<const BedMesh> bed, double steps_per_mm,
+                                      double start_mm) {
     MotorFunction function(taps, true);
     function.tower_ = tower;
+    function.bed_ = std::move(bed);
     function.steps_per_mm_ = steps_per_mm;
     function.start_ = start_mm;
     return function;
@@ -71,6 +86,7 @@ Known MotorFunction::begin_piece(const MoveWindow& window, const Instant& begin)
         duration_s_ = 0;
         return Known::rests_forever;
     }
+    if (bed_) stay_in_cell();
     limit_jerk();
     return Known::piece;
 }
@@ -161,7 +177,7 @@ void MotorFunction::add_turn(const Tap& tap, const ChannelMove& move, double dis
     const double sine = move.radius_mm * std::sin(move.start_angle_rad + turned_rad);
     const double cosine = move.radius_mm * std::cos(move.start_angle_rad + turned_rad);
     const double wx = tap.weights[axis_x], wy = tap.weights[axis_y];
-    if (is_carriage_) {
+    if (in_space_) {
         smooth_[axis_x].add_constant(wx * x_mm);
         smooth_[axis_y].add_constant(wy * y_mm);
         if (wx != 0) smooth_[axis_x].add_turn({angle, -wx * sine, -wx * cosine});
@@ -172,50 +188,118 @@ void MotorFunction::add_turn(const Tap& tap, const ChannelMove& move, double dis
     smooth_[0].add_turn({angle, wy * cosine - wx * sine, -wx * cosine - wy * sine});
 }
 
-// Above the head: g = sqrt(q), q = arm^2 - |p|^2, p the way from the tower.
+// Chooses the cell, and ends the piece where the head leaves it.
+void MotorFunction::stay_in_cell() {
+    const Point at{smooth_[axis_x].at(0).position, smooth_[axis_y].at(0).position,
+                   smooth_[axis_z].at(0).position};
+    const std::array<double, 3> place_mm{at.x, at.y, at.z};
+    for (std::size_t i = 0; cell_ && i < place_mm.size(); ++i)
+        if (place_mm[i] < cell_->low_mm[i] - cell_overlap_mm / 2 ||
+            place_mm[i] > cell_->high_mm[i] + cell_overlap_mm / 2)
+            cell_.reset();
+    if (!cell_) cell_ = bed_->cell_at(at);
+    for (std::size_t i = 0; i < smooth_.size(); ++i)
+        end_no_later_than(smooth_[i].leaves(cell_->low_mm[i] - cell_overlap_mm,
+                                            cell_->high_mm[i] + cell_overlap_mm,
+                                            cell_overlap_mm / 10, duration_s_));
+}
+
+Sample MotorFunction::lift_at(const std::array<Sample, 3>& at) const {
+    const MeshCell& cell = *cell_;
+    Sample u = at[axis_x], v = at[axis_y];
+    u.position -= cell.x_mm;
+    v.position -= cell.y_mm;
+    const Sample uv = product(u, v);
+    const auto height = [&](double Sample::*of) {
+        return cell.slope_x * u.*of + cell.slope_y * v.*of + cell.twist_per_mm * uv.*of;
+    };
+    const Sample& z = at[axis_z];
+    return product(
+        Sample{cell.height_mm + height(&Sample::position), height(&Sample::speed),
+               height(&Sample::acceleration)},
+        Sample{cell.share + cell.share_slope_per_mm * z.position, cell.share_slope_per_mm * z.speed,
+               cell.share_slope_per_mm * z.acceleration});
+}
+
+double MotorFunction::lift_jerk() const {
+    const MeshCell& cell = *cell_;
+    const auto sizes = [this](std::size_t axis, double from_mm) {
+        const Bounds bounds = smooth_[axis].bounds(duration_s_);
+        return Sizes{std::abs(smooth_[axis].at(0).position - from_mm) + bounds.speed * duration_s_,
+                     bounds.speed, bounds.acceleration, bounds.jerk()};
+    };
+    const Sizes u = sizes(axis_x, cell.x_mm), v = sizes(axis_y, cell.y_mm), z = sizes(axis_z, 0);
+    const Sizes uv = product(u, v);
+    Sizes height{}, share{};
+    for (std::size_t i = 0; i < height.size(); ++i) {
+        height[i] = std::abs(cell.slope_x) * u[i] + std::abs(cell.slope_y) * v[i] +
+                    std::abs(cell.twist_per_mm) * uv[i];
+        share[i] = std::abs(cell.share_slope_per_mm) * z[i];
+    }
+    height[0] += std::abs(cell.height_mm);
+    share[0] += cell.share;
+    return product(height, share)[3];
+}
+
 Sample MotorFunction::at(double time_s) const {
-    if (!is_carriage_) {
+    if (!in_space_) {
         Sample sample = smooth_[0].at(time_s);
         sample.position -= start_;
         return sample;
     }
-    const Sample x = smooth_[axis_x].at(time_s), y = smooth_[axis_y].at(time_s),
-                 z = smooth_[axis_z].at(time_s);
-    const double px = x.position - tower_.x_mm, py = y.position - tower_.y_mm;
+    const std::array<Sample, 3> head{smooth_[axis_x].at(time_s), smooth_[axis_y].at(time_s),
+                                     smooth_[axis_z].at(time_s)};
+    Sample z = head[axis_z];
+    const auto raise = [&z](const Sample& by) {
+        z = {z.position + by.position, z.speed + by.speed, z.acceleration + by.acceleration};
+    };
+    if (bed_) raise(lift_at(head));
+    if (tower_) raise(height_over_head(head[axis_x], head[axis_y]));
+    return {steps_per_mm_ * (z.position - start_), steps_per_mm_ * z.speed,
+            steps_per_mm_ * z.acceleration};
+}
+
+// g = sqrt(q), q = arm^2 - |p|^2, p the way from the tower.
+Sample MotorFunction::height_over_head(const Sample& x, const Sample& y) const {
+    const double px = x.position - tower_->x_mm, py = y.position - tower_->y_mm;
     const double off_mm = std::sqrt(px * px + py * py);
     const double q = std::max(std::numeric_limits<double>::min(),
-                              (tower_.arm_mm - off_mm) * (tower_.arm_mm + off_mm));
+                              (tower_->arm_mm - off_mm) * (tower_->arm_mm + off_mm));
     const double g = std::sqrt(q);
     const double half_q1 = -(px * x.speed + py * y.speed);
     const double half_q2 =
         -(x.speed * x.speed + y.speed * y.speed + px * x.acceleration + py * y.acceleration);
     const double g1 = half_q1 / g;
-    return {steps_per_mm_ * (z.position + g - start_), steps_per_mm_ * (z.speed + g1),
-            steps_per_mm_ * (z.acceleration + (half_q2 - g1 * g1) / g)};
+    return {g, g1, (half_q2 - g1 * g1) / g};
 }
 
-// Of the root: g g' = q'/2, g g'' = q''/2 - g'^2, g g''' = q'''/2 - 3 g' g''.
 void MotorFunction::limit_jerk() {
-    if (!is_carriage_) {
+    if (!in_space_) {
         const Bounds own = smooth_[0].bounds(duration_s_);
         least_jerk_ = own.least_jerk;
         most_jerk_ = own.most_jerk;
         return;
     }
+    const double lift = bed_ ? lift_jerk() : 0, above = tower_ ? jerk_over_head() : 0;
+    most_jerk_ =
+        std::abs(steps_per_mm_) * (smooth_[axis_z].bounds(duration_s_).jerk() + lift + above);
+    least_jerk_ = -most_jerk_;
+}
+
+// Of the root: g g' = q'/2, g g'' = q''/2 - g'^2, g g''' = q'''/2 - 3 g' g''.
+double MotorFunction::jerk_over_head() const {
     const Bounds x = smooth_[axis_x].bounds(duration_s_), y = smooth_[axis_y].bounds(duration_s_);
     const double v = std::hypot(x.speed, y.speed), a = std::hypot(x.acceleration, y.acceleration);
     const double j = std::hypot(x.jerk(), y.jerk());
-    const double off_mm = std::hypot(smooth_[axis_x].at(0).position - tower_.x_mm,
-                                     smooth_[axis_y].at(0).position - tower_.y_mm) +
+    const double off_mm = std::hypot(smooth_[axis_x].at(0).position - tower_->x_mm,
+                                     smooth_[axis_y].at(0).position - tower_->y_mm) +
                           v * duration_s_;
     const double height_mm =
-        std::sqrt(std::max(0.0, (tower_.arm_mm - off_mm) * (tower_.arm_mm + off_mm)));
-    const double g = std::max(height_mm, least_height_share * tower_.arm_mm);
+        std::sqrt(std::max(0.0, (tower_->arm_mm - off_mm) * (tower_->arm_mm + off_mm)));
+    const double g = std::max(height_mm, least_height_share * tower_->arm_mm);
     const double g1 = off_mm * v / g;
     const double g2 = (v * v + off_mm * a + g1 * g1) / g;
-    const double g3 = (3 * v * a + off_mm * j + 3 * g1 * g2) / g;
-    most_jerk_ = std::abs(steps_per_mm_) * (smooth_[axis_z].bounds(duration_s_).jerk() + g3);
-    least_jerk_ = -most_jerk_;
+    return (3 * v * a + off_mm * j + 3 * g1 * g2) / g;
 }
 
 }  // namespace lyr::motion

@@ -4,17 +4,20 @@
 // Method. Each copy of the motion (a tap) has a cursor at its own place in the plan: a move and a phase of
 // its speed profile. From there to the nearest end of a phase all are cubics in time, in the distance or
 // in the angle of an arc. A motor that is a sum of axes adds them up; a tower's carriage keeps x, y and z
-// apart and takes the root.
+// apart and takes the root, and over a crooked bed z is lifted by what x and y say.
 //
 // Contract
 //  1. Pieces follow each other without gaps and end where a phase of a copy ends, where an arc has turned
-//     by Smooth::largest_turn_rad, or where nothing is known of the plan yet.
+//     by Smooth::largest_turn_rad, where the head leaves a cell of the mesh, or where nothing is known of the plan yet.
 //  2. at() is exact to rounding within the piece; bounds() hold there.
 
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <span>
 
+#include "target/motion/bed_mesh.h"
 #include "target/motion/kinematics.h"
 #include "target/motion/move_window.h"
 #include "target/motion/smooth.h"
@@ -39,8 +42,9 @@ class MotorFunction {
 public:
     // A sum of channels times the weights of each tap, in steps; `start_steps` is subtracted.
     static MotorFunction sum(const Taps& taps, double start_steps);
-    // The taps' weights are those of x, y and z, in mm.
-    static MotorFunction carriage(const Taps& taps, const Delta::Tower& tower, double steps_per_mm,
+    // The taps' weights are those of x, y and z, in mm; the motor follows z, with a tower the carriage, over the bed.
+    static MotorFunction in_space(const Taps& taps, const std::optional<Delta::Tower>& tower,
+                                  std::shared_ptr<const BedMesh> bed, double steps_per_mm,
                                   double start_mm);
 
     // Moves on to the piece that begins at `begin`, which must be where the last one ended.
@@ -65,22 +69,32 @@ private:
         std::size_t phase = 0;
     };
 
-    MotorFunction(const Taps& taps, bool is_carriage);
+    // How far a cell of the mesh goes on beyond its bounds, so that rounding at them is no crossing.
+    static constexpr double cell_overlap_mm = 1e-9;
+
+    MotorFunction(const Taps& taps, bool in_space);
     // False: the plan does not reach so far yet.
     bool add(Cursor& cursor, const MoveWindow& window, const Instant& begin);
     void add_rest(const Tap& tap, const ChannelValues& at);
     void add_moving(Cursor& cursor, const ChannelMove& move, double since_s);
     void add_turn(const Tap& tap, const ChannelMove& move, double distance_mm,
                   const TurnAngle& angle);
-    Smooth& smooth_of(std::size_t channel) { return smooth_[is_carriage_ ? channel : 0]; }
+    Smooth& smooth_of(std::size_t channel) { return smooth_[in_space_ ? channel : 0]; }
+    void stay_in_cell();
+    Sample lift_at(const std::array<Sample, 3>& at) const;
+    double lift_jerk() const;
+    Sample height_over_head(const Sample& x, const Sample& y) const;
+    double jerk_over_head() const;
     void limit_jerk();
     void end_no_later_than(double time_s) {
         if (time_s < duration_s_) duration_s_ = time_s;
     }
 
     std::vector<Cursor> cursors_;
-    bool is_carriage_ = false;
-    Delta::Tower tower_;
+    bool in_space_ = false;
+    std::optional<Delta::Tower> tower_;
+    std::shared_ptr<const BedMesh> bed_;
+    std::optional<MeshCell> cell_;
     double steps_per_mm_ = 1, start_ = 0;
     std::array<Smooth, 3> smooth_;
     double duration_s_ = 0, least_jerk_ = 0, most_jerk_ = 0;

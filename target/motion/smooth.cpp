@@ -1,6 +1,7 @@
 #include "target/motion/smooth.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace lyr::motion {
 namespace {
@@ -72,6 +73,26 @@ Bounds Smooth::bounds(double time) const {
         bounds.most_jerk += jerk;
     }
     return bounds;
+}
+
+// From each look on, the acceleration's bound says how long neither bound can be reached. Close to a bound that is
+// Newton's step, so that a few looks suffice.
+double Smooth::leaves(double low, double high, double nearly, double time) const {
+    constexpr int most_looks = 50;
+    const double acceleration = bounds(time).acceleration;
+    const auto reach_s = [acceleration](double way, double speed) {
+        if (std::isinf(way)) return way;
+        const double root = speed + std::sqrt(speed * speed + 2 * acceleration * way);
+        return root > 0 ? 2 * way / root : std::numeric_limits<double>::infinity();
+    };
+    double at_s = 0;
+    for (int look = 0; look < most_looks && at_s < time; ++look) {
+        const Sample sample = at(at_s);
+        const double up = high - sample.position, down = sample.position - low;
+        if (std::min(up, down) <= nearly) break;
+        at_s += std::min(reach_s(up, sample.speed), reach_s(down, -sample.speed));
+    }
+    return std::min(at_s, time);
 }
 
 }  // namespace lyr::motion

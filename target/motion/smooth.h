@@ -4,7 +4,9 @@
 // Contract
 //  1. Within |angle| <= largest_turn_rad position, speed and acceleration are exact to rounding. Nothing
 //     is lost on arcs that are nearly straight: a turn is kept as its way from where it begins.
-//  2. bounds() holds for all times from 0 to the one given, as long as no angle turns back.
+//  2. leaves() is when the position first comes within `nearly` of one of two bounds it lies between, or the time given
+//     if that is earlier. It may be early (a position that creeps along a bound), never late.
+//  3. bounds() holds for all times from 0 to the one given, as long as no angle turns back.
 
 #pragma once
 
@@ -62,6 +64,7 @@ public:
         return sample;
     }
     Bounds bounds(double time) const;
+    double leaves(double low, double high, double nearly, double time) const;
 
 private:
     static void add(const Turn& turn, double time, Sample& sample);

@@ -45,23 +45,34 @@ MotorFunction sum_of_axes(const LinearKinematics& kinematics, std::size_t motor,
     return MotorFunction::sum(taps, start_steps);
 }
 
+// A motor that follows x, y and z otherwise than by adding them up.
+MotorFunction in_space(double steps_per_mm, const std::optional<Delta::Tower>& tower,
+                       const Point& origin, const Shaping& shaping) {
+    Taps taps;
+    for (std::size_t axis = 0; axis < shaping.axes.size(); ++axis) add(taps, shaping, axis, 1);
+    Point lifted = origin;
+    if (shaping.bed) lifted.z += shaping.bed->lift_mm(origin);
+    return MotorFunction::in_space(taps, tower, shaping.bed, steps_per_mm,
+                                   tower ? carriage_mm(*tower, lifted) : lifted.z);
+}
+
 MotorFunction function_of(const Cartesian& machine, std::size_t motor, const Point& origin,
                           const Shaping& shaping) {
-    return sum_of_axes(machine, motor, machine.steps_per_mm[motor], origin, shaping);
+    const double steps_per_mm = machine.steps_per_mm[motor];
+    if (motor == axis_z && shaping.bed) return in_space(steps_per_mm, {}, origin, shaping);
+    return sum_of_axes(machine, motor, steps_per_mm, origin, shaping);
 }
 
 MotorFunction function_of(const CoreXy& machine, std::size_t motor, const Point& origin,
                           const Shaping& shaping) {
-    return sum_of_axes(machine, motor, machine.steps_per_mm[motor], origin, shaping);
+    const double steps_per_mm = machine.steps_per_mm[motor];
+    if (motor == axis_z && shaping.bed) return in_space(steps_per_mm, {}, origin, shaping);
+    return sum_of_axes(machine, motor, steps_per_mm, origin, shaping);
 }
 
 MotorFunction function_of(const Delta& machine, std::size_t motor, const Point& origin,
                           const Shaping& shaping) {
-    Taps taps;
-    for (std::size_t axis = 0; axis < shaping.axes.size(); ++axis) add(taps, shaping, axis, 1);
-    const Delta::Tower& tower = machine.towers[motor];
-    return MotorFunction::carriage(taps, tower, machine.steps_per_mm[motor],
-                                   carriage_mm(tower, origin));
+    return in_space(machine.steps_per_mm[motor], machine.towers[motor], origin, shaping);
 }
 
 MotorFunction extruder_of(double steps_per_mm, const Shaping& shaping) {

@@ -4,7 +4,7 @@
 //
 // Contract
 //  1. At every time each motor is within half a step (and TimeWalk::touch_steps) of its ideal position:
-//     the kinematics of the taps' sum of the plan, and the play made up for.
+//     the kinematics of the taps' sum of the plan, lifted by the bed, and the play made up for.
 //  2. A step comes within 1 us of the exact solution (in practice within 1 ns, the rounding of times).
 //  3. Positions are whole counts from the origin for the whole print, the extruder's too: nothing
 //     drifts.
@@ -26,6 +26,7 @@ struct Shaping {
     std::array<Taps, axis_e> axes;            // each with weights of one channel; empty: as planned
     Taps extruder;                            // of filament and pressed filament; empty: as planned
     std::array<double, axis_e> play_steps{};  // of the motors
+    std::shared_ptr<const BedMesh> bed{};  // by which z is lifted after all that; none: a flat one
 };
 
 class TimedGenerator {

@@ -50,6 +50,18 @@ motion::Kinematics kinematics_of(const config::Printer& printer) {
     return motion::Cartesian{steps_per_mm};
 }
 
+std::shared_ptr<const motion::BedMesh> bed_of(const config::Printer& printer) {
+    const config::BedMesh& mesh = printer.mesh;
+    if (mesh.heights_mm.empty()) return nullptr;
+    std::vector<double> heights_mm;
+    for (const std::vector<double>& row : mesh.heights_mm)
+        heights_mm.insert(heights_mm.end(), row.begin(), row.end());
+    const auto& [x0, y0, x1, y1] = mesh.area_mm;
+    return std::make_shared<const motion::BedMesh>(motion::Point{x0, y0}, motion::Point{x1, y1},
+                                                   mesh.heights_mm.front().size(),
+                                                   std::move(heights_mm), mesh.fade_mm);
+}
+
 motion::Shaping shaping_of(const config::Printer& printer) {
     motion::Shaping shaping;
     for (std::size_t axis = 0; axis < printer.shapers.size(); ++axis) {
@@ -61,6 +73,7 @@ motion::Shaping shaping_of(const config::Printer& printer) {
         shaping.play_steps[axis] = printer.backlash_mm[axis] * printer.axes[axis].steps_per_mm;
     shaping.extruder = motion::taps_of(
         motion::PressureAdvance{printer.pressure_advance_s, printer.pressure_smooth_s});
+    shaping.bed = bed_of(printer);
     return shaping;
 }
 
@@ -74,7 +87,7 @@ bool is_timed(const config::Printer& printer) {
     for (const double backlash_mm : printer.backlash_mm)
         if (backlash_mm > 0) return true;
     return is_shaped(printer) || printer.kinematics == config::Kinematics::delta ||
-           printer.max_jerk_mm_s3 > 0;
+           printer.max_jerk_mm_s3 > 0 || !printer.mesh.heights_mm.empty();
 }
 
 }  // namespace lyr::moves

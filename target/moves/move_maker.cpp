@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "target/moves/machine.h"
+
 namespace lyr::moves {
 namespace {
 
@@ -32,6 +34,7 @@ motion::Limits motion_limits(const config::Printer& printer) {
         limits.axes[i] = {printer.axes[i].max_speed_mm_s, printer.axes[i].max_acceleration_mm_s2};
     limits.junction_deviation_mm = printer.junction_deviation_mm;
     limits.jerk_mm_s3 = printer.max_jerk_mm_s3;
+    if (const auto bed = bed_of(printer)) limits.bed = bed->shape();
     return limits;
 }
 

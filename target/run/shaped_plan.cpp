@@ -86,7 +86,8 @@ double ShapedPlan::shaped_mm(std::size_t axis, std::int64_t plan_ns) const {
     return sum_mm;
 }
 
-std::array<double, 3> ShapedPlan::carried_mm(const motion::Point& at) const {
+std::array<double, 3> ShapedPlan::carried_mm(motion::Point at) const {
+    if (shaping_.bed) at.z += shaping_.bed->lift_mm(at);
     if (std::holds_alternative<motion::CoreXy>(machine_)) return {at.x + at.y, at.x - at.y, at.z};
     std::array<double, 3> carried{at.x, at.y, at.z};
     if (const auto* delta = std::get_if<motion::Delta>(&machine_))

@@ -39,7 +39,7 @@ private:
     double shaped_mm(std::size_t axis, std::int64_t plan_ns) const;
     const Piece& piece_at(std::int64_t plan_ns) const;
     static bool presses(const motion::PlannedMove& move);
-    std::array<double, 3> carried_mm(const motion::Point& at) const;
+    std::array<double, 3> carried_mm(motion::Point at) const;
 
     motion::Kinematics machine_;
     motion::Shaping shaping_;

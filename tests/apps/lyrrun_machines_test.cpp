@@ -41,3 +41,24 @@ TEST_CASE("lyrrun: a slip in a machine's keys comes with its line and the key th
     check_failure(ended, "lyrrun", 3, "p.toml:4");
     CHECK(ended.err.find("did you mean `radius_mm`?") != std::string::npos);
 }
+
+TEST_CASE("lyrrun: over a crooked bed every pulse is within half a microstep of the lifted path") {
+    const Folder folder("mesh");
+    const std::string print =
+        write_print("mesh", {draw_square, draw_arcs, draw_circles, draw_climb}, {0, false, 60, 40});
+    for (const char* printer : {"corexy", "delta", "cartesian"}) {
+        CAPTURE(printer);
+        folder.write(
+            "calibration.toml",
+            "[mesh]\narea_mm = [40, 20, 85, 65]\npoints = [3, 4]\nfade_mm = 0.6\n"
+            "heights_mm = [[0, 0.3, -0.2], [0.1, 0.2, 0.4], [-0.3, 0, 0.1], [0, 0, 0.2]]\n");
+        std::string text = text_of(std::string(LYR_FIXTURES "/printers/") + printer + ".toml");
+        if (const std::size_t at = text.find("calibration_file"); at != std::string::npos)
+            text.erase(at, text.find('\n', at) - at);
+        folder.write("p.toml", "calibration_file = \"calibration.toml\"\n" + text);
+        const Ended ended = folder.run("lyrrun " + print + " --simulate --printer p.toml");
+        CHECK(ended.status == 0);
+        CHECK(ended.err.empty());
+        CHECK(ended.out.find("within half a microstep everywhere") != std::string::npos);
+    }
+}

@@ -57,4 +57,28 @@ TEST_CASE("kinematics: steps per mm that are no number or absurd are named") {
         }
 }
 
+TEST_CASE("kinematics 4, 5: the head is where its motors say, on every machine") {
+    Delta delta{{100, 100, 100, 400}, {}};
+    const std::array<double, 3> angles_rad{3.7, 5.74, 1.55}, radii_mm{120, 123, 118},
+        arms_mm{250, 251.5, 248};
+    for (std::size_t i = 0; i < 3; ++i)
+        delta.towers[i] = {radii_mm[i] * std::cos(angles_rad[i]),
+                           radii_mm[i] * std::sin(angles_rad[i]), arms_mm[i]};
+    // Towers the other way round about the bed must not turn the head's place upside down.
+    Delta mirrored = delta;
+    for (Delta::Tower& tower : mirrored.towers) tower.x_mm = -tower.x_mm;
+    const std::array<Kinematics, 4> machines{Cartesian{{80, 80, 400, 400}},
+                                             CoreXy{{80, 80, 400, 400}}, delta, mirrored};
+    for (const Kinematics& machine : machines)
+        for (double x = -80; x <= 80; x += 13.7)
+            for (double y = -80; y <= 80; y += 17.3)
+                for (const double z : {-1.0, 0.0, 0.123, 150.0}) {
+                    const Point at = head_at(machine, motors_at(machine, {x, y, z}));
+                    CHECK(std::abs(at.x - x) < 1e-9);
+                    CHECK(std::abs(at.y - y) < 1e-9);
+                    CHECK(std::abs(at.z - z) < 1e-9);
+                }
+    CHECK(std::isnan(head_at(Kinematics(delta), {0, 900, 0}).z));
+}
+
 }  // namespace lyr::motion

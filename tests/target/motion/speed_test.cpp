@@ -99,6 +99,15 @@ Shaping all_shaped() {
     return shaping;
 }
 
+// As crooked as beds are: 0.15 mm up and down, a height every 30 mm.
+Shaping over_bed(Shaping shaping) {
+    std::vector<double> heights_mm;
+    for (int i = 0; i < 49; ++i) heights_mm.push_back(0.15 * std::sin(1.7 * i));
+    shaping.bed = std::make_shared<const BedMesh>(Point{-90, -90}, Point{90, 90}, 7,
+                                                  std::move(heights_mm), 10);
+    return shaping;
+}
+
 }  // namespace
 
 TEST_CASE("speed: steps and moves per second on one core" * doctest::skip()) {
@@ -151,6 +160,10 @@ TEST_CASE("speed: the same with every option" * doctest::skip()) {
             report(with + ", CoreXY", timed_rate_of(job, CoreXy{steps}, {}));
             report(with + ", CoreXY, EI, pressure advance",
                    timed_rate_of(job, CoreXy{steps}, all_shaped()));
+            report(with + ", CoreXY, mesh", timed_rate_of(job, CoreXy{steps}, over_bed({})));
+            report(with + ", delta, mesh", timed_rate_of(job, delta_of(80), over_bed({})));
+            report(with + ", delta, mesh, EI, pressure advance",
+                   timed_rate_of(job, delta_of(80), over_bed(all_shaped())));
             report(with + ", delta", timed_rate_of(job, delta_of(80), {}));
             report(with + ", delta, EI, pressure advance",
                    timed_rate_of(job, delta_of(80), all_shaped()));

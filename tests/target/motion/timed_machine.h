@@ -103,7 +103,11 @@ private:
         if (channel == axis_e) return fed_[index] + share * advance_of(move.path);
         return pressed_[index] + (presses(move) ? share * advance_of(move.path) : 0);
     }
-    Real motor_mm(std::size_t motor, const std::array<Real, 3>& at) const {
+    Real motor_mm(std::size_t motor, std::array<Real, 3> at) const {
+        if (timed_.shaping.bed)
+            at[2] +=
+                timed_.shaping.bed->lift_mm({static_cast<double>(at[0]), static_cast<double>(at[1]),
+                                             static_cast<double>(at[2])});
         if (std::holds_alternative<Cartesian>(timed_.kinematics)) return at[motor];
         if (std::holds_alternative<CoreXy>(timed_.kinematics))
             return motor == 0 ? at[0] + at[1] : motor == 1 ? at[0] - at[1] : at[2];

@@ -1,0 +1,166 @@
+// Contracts of target/home/mover.h and step_tally.h, by number: with virtual time, and with threads on the real clock as
+// on a board.
+
+#include "target/home/mover.h"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <mutex>
+#include <thread>
+
+#include "target/home/scene.h"
+
+using namespace lyr;
+using namespace lyr::home;
+using namespace lyr::tests;
+using config::Kinematics;
+
+namespace {
+
+// A machine for two threads: one writes its lines, the other reads its contacts.
+class Bench final : public gpio::GpioChip, public gpio::InputLines {
+public:
+    Bench(std::int64_t count, const gpio::Clock& clock) : count_(count), clock_(clock) {}
+
+    std::size_t line_count() const override { return 8; }
+    Status write(gpio::LineMask changed, gpio::LineMask levels) override {
+        const std::lock_guard lock(mutex_);
+        const gpio::LineMask after = (levels_ & ~changed) | (levels & changed);
+        if (after & ~levels_ & run::step_bit(0)) count_ += after & run::direction_bit(0) ? 1 : -1;
+        levels_ = after;
+        const bool active = count_ <= 0;
+        if (active != active_) edges_.push_back({clock_.now_ns(), 0, active});
+        active_ = active;
+        return Done{};
+    }
+    Status release() override { return Done{}; }
+    Result<gpio::LineMask> read() override {
+        const std::lock_guard lock(mutex_);
+        return gpio::LineMask{active_};
+    }
+    Result<std::size_t> collect(std::span<gpio::InputEdge> edges) override {
+        const std::lock_guard lock(mutex_);
+        const std::size_t count = std::min(edges.size(), edges_.size());
+        std::copy_n(edges_.begin(), count, edges.begin());
+        edges_.erase(edges_.begin(), edges_.begin() + static_cast<std::ptrdiff_t>(count));
+        return count;
+    }
+    Result<bool> wait_ns(std::int64_t time_ns) override {
+        std::this_thread::sleep_for(std::chrono::nanoseconds(time_ns));
+        return true;
+    }
+    std::int64_t count() const { return count_; }
+
+private:
+    std::mutex mutex_;
+    std::int64_t count_;
+    const gpio::Clock& clock_;
+    gpio::LineMask levels_ = 0;
+    bool active_ = false;
+    std::vector<gpio::InputEdge> edges_;
+};
+
+config::Printer one_axis() {
+    config::Printer printer = machine_of(Kinematics::cartesian);
+    printer.axes[config::axis_x].max_mm = 10;
+    printer.axes[config::axis_x].min_mm = 0;
+    printer.endstops = {};
+    printer.endstops[0].input = config::Pin{"c", 1u, false};
+    printer.endstops[0].fast_mm_s = 50;
+    printer.endstops[0].slow_mm_s = 10;
+    printer.endstops[0].back_off_mm = 0.5;
+    printer.homing.lift_mm = 0;
+    printer.pulse.late_limit_ns = 10'000'000'000;  // the machine of a test may be busy
+    return printer;
+}
+
+std::vector<motion::Move> along_x(const config::Printer& printer, double way_mm,
+                                  double speed_mm_s) {
+    const auto& [x, y, z] = printer.start_mm;
+    return {{motion::Line{{x, y, z}, {x + way_mm, y, z}}, speed_mm_s}};
+}
+
+}  // namespace
+
+TEST_CASE("tally 1, 2: the counts at any time are those after the last write before it") {
+    gpio::VirtualClock clock;
+    gpio::MockChip mock(8, clock, {});
+    StepTally tally(mock, clock);
+    std::vector<std::pair<std::int64_t, motion::StepCounts>> seen;
+    for (int i = 0; i < 500; ++i) {
+        clock.advance_ns(1'000);
+        const gpio::LineMask direction = i % 7 < 4 ? run::direction_bit(1) : 0;
+        const gpio::LineMask steps =
+            run::step_bit(1) | (i % 3 == 0 ? run::step_bit(0) : gpio::LineMask{0});
+        REQUIRE(tally.write(0xff, direction | steps).ok());
+        seen.emplace_back(clock.now_ns(), tally.counts());
+        clock.advance_ns(300);
+        REQUIRE(tally.write(steps, 0).ok());
+    }
+    CHECK(tally.counts()[0] == -167);
+    CHECK(*tally.counts_at(0) == motion::StepCounts{});
+    for (const auto& [time_ns, counts] : seen) {
+        CHECK(*tally.counts_at(time_ns) == counts);
+        CHECK(*tally.counts_at(time_ns + 999) == counts);
+    }
+    for (std::size_t i = 0; i <= StepTally::remembered; ++i) {
+        clock.advance_ns(10);
+        REQUIRE(tally.write(run::step_bit(2), run::step_bit(2)).ok());
+        REQUIRE(tally.write(run::step_bit(2), 0).ok());
+    }
+    CHECK_FALSE(tally.counts_at(500));
+    CHECK(*tally.counts_at(clock.now_ns()) == tally.counts());
+}
+
+TEST_CASE("mover 1, 2: a contact stops the machine on its path, and what it ran on is counted") {
+    config::Printer printer = machine_of(Kinematics::cartesian);
+    printer.simulated.head_mm = {10.003, 100, 50};
+    Scene scene(printer);
+    printer.start_mm = {10.003, 100, 50};
+    Contacts watched;
+    watched[0] = true;
+    const auto moved = scene.mover.run(printer, along_x(printer, -40, 100), watched);
+    REQUIRE_MESSAGE(moved.ok(), moved.error().message);
+    REQUIRE(moved->at_contact[0]);
+    CHECK((*moved->at_contact[0])[0] == -801);  // the first step at or beyond 0
+    CHECK(moved->counts[0] < -801);
+    CHECK(moved->counts[0] > -1'600);
+    CHECK(moved->counts[1] == 0);
+    const auto back = scene.mover.run(printer, along_x(printer, 5, 100));
+    REQUIRE(back.ok());
+    CHECK(scene.machine.chip().levels() == 0);
+    CHECK(scene.machine.head().x ==
+          doctest::Approx(10.003 + static_cast<double>(moved->counts[0] + back->counts[0]) / 80));
+}
+
+TEST_CASE("mover 4: homed with threads on the real clock, as on a board") {
+    const config::Printer printer = one_axis();
+    gpio::MonotonicClock clock;
+    Bench bench(3 * 80 + 17, clock);
+    const run::StopSignals signals;
+    Mover mover(printer, bench, clock, &bench, &signals);
+    const auto homed = home::home(mover, printer, homable(printer));
+    REQUIRE_MESSAGE(homed.ok(), homed.error().message);
+    CHECK(std::abs(homed->head.x * 80 - static_cast<double>(bench.count())) <= 1.01);
+    CHECK(homed->repeat_mm <= 0.05);
+}
+
+TEST_CASE("mover 3: a signal brings the machine to rest, with status stopped") {
+    const config::Printer printer = one_axis();
+    gpio::MonotonicClock clock;
+    Bench bench(1'000'000, clock);
+    const run::StopSignals signals;
+    Mover mover(printer, bench, clock, &bench, &signals);
+    std::thread user([] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(150));
+        ::kill(::getpid(), SIGTERM);
+    });
+    const auto moved = mover.run(printer, along_x(printer, 100, 20), {});
+    user.join();
+    REQUIRE_FALSE(moved.ok());
+    CHECK(moved.error().status == ExitStatus::stopped);
+    CHECK(bench.count() > 1'000'000);
+    CHECK(bench.count() < 1'000'000 + 100 * 80);
+}
