@@ -2,8 +2,6 @@
 
 #include "target/run/step_stream.h"
 
-#include <bit>
-
 #include "target/run/inspect.h"
 
 namespace lyr::run {
@@ -13,14 +11,6 @@ constexpr std::size_t batch_events = 2048;
 constexpr double ns_per_s = 1e9;
 // Orders that stand between the moves of a full planner are fewer, but for a file that means harm.
 constexpr std::size_t most_waiting = 4 * motion::Planner::default_capacity;
-
-void append_steps(const motion::StepEvent& event, std::vector<Step>& steps) {
-    for (unsigned motors = event.motors; motors; motors &= motors - 1) {
-        const int motor = std::countr_zero(motors);
-        steps.push_back(
-            {event.time_ns, static_cast<std::uint8_t>(motor), (event.positive >> motor & 1) != 0});
-    }
-}
 
 }  // namespace
 
