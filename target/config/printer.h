@@ -30,6 +30,7 @@
 #include "base/diagnostic.h"
 #include "target/config/heater.h"
 #include "target/config/homing.h"
+#include "target/config/life.h"
 
 namespace lyr::config {
 
@@ -97,6 +98,11 @@ struct Printer {
     BedMesh mesh;
     SimulatedMachine simulated;
     std::string calibration_file;  // empty: none
+    Inputs inputs;
+    PauseSettings pause;
+    FilamentSettings filament;
+    std::string recovery_folder;  // of the journals of prints; empty: beside each print
+    WatchdogSettings watchdog;
 };
 
 // A middling Cartesian printer without lines and with room for any part, to simulate without a file.
