@@ -35,6 +35,7 @@ StepStream::StepStream(std::string path, Interpreter interpreter, motion::Planne
 
 Result<bool> StepStream::next(std::vector<Step>& steps) {
     moves_.clear();
+    begun_.clear();
     std::size_t room = batch_events;
     while (room > 0) {
         room -= take(room, steps);
@@ -47,6 +48,7 @@ Result<bool> StepStream::next(std::vector<Step>& steps) {
             }
             if (const Status planned = plan(); !planned) return planned.error();
         }
+        if (move.tag != layer_) begun_.push_back({move.start_ns, move.tag});
         layer_ = move.tag;
         if (!waiting_.empty() && waiting_.front().before_move <= popped_) {
             // What lags behind the plan comes first.
@@ -111,8 +113,10 @@ Status StepStream::plan(const motion::Move& move) {
     return Done{};
 }
 
-Status StepStream::plan(const HeatOrder& order) {
-    if (!orders_) return Done{};
+Status StepStream::plan(const HeatOrder& asked) {
+    const std::optional<HeatOrder> heeded = orders_ ? orders_->heed(asked) : std::nullopt;
+    if (!heeded) return Done{};
+    const HeatOrder& order = *heeded;
     // All motors rest when the head does, and what lags behind it has come.
     if (order.is_gate()) planner_.dwell(static_cast<double>(generator_.tail_ns()) / ns_per_s);
     const bool same_place = !waiting_.empty() && waiting_.back().before_move == pushed_;
