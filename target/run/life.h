@@ -13,6 +13,9 @@
 //  4. A cancel parks too, and ends by a request to stop; an emergency stop does so at once, and calls `cut`.
 //  5. What cannot be done as things are is refused, and status().message says why.
 //  6. Commands take effect within the next tick.
+//  7. With a journal, each layer is noted there when the head begins it, and where the head is parked; a journal that
+//     cannot be written is told, and is no reason to stop.
+//  8. A print that resumes after it was cut off begins with heat, then the head is lifted, unless that was done.
 
 #pragma once
 
@@ -21,7 +24,9 @@
 
 #include "target/run/course.h"
 #include "target/run/heat_desk.h"
+#include "target/run/journal.h"
 #include "target/run/print_control.h"
+#include "target/run/resumption.h"
 #include "target/run/trip.h"
 
 namespace lyr::run {
@@ -45,6 +50,10 @@ public:
 
     // Takes heat away at once, from any thread.
     std::function<void()> cut;
+    // Both may be none. `identity` is that of the file.
+    void keep_journal(JournalWriter* journal, const FileIdentity& identity);
+    // Before the first tick; the printer's start is where the head is after the lift.
+    void begin_with(const Resumption& resumption, bool is_lifted);
 
     void tick(double now_s);
     // What the print came to; the last status.
@@ -54,6 +63,7 @@ public:
     // From leaving the path to being back.
     double paused_s() const { return paused_s_; }
     bool rests() const { return phase_ == Phase::resting; }
+    bool is_cancelled() const { return ended_by_ && cancels(); }
     // Ended by command: what to say.
     const std::optional<std::string>& ended_by() const { return ended_by_; }
 
@@ -77,6 +87,9 @@ private:
     void parked();
     void rest();
     void go_back();
+    void lift();
+    void note();
+    motion::Point head() const;
     void returned();
     void unload();
     void make(std::span<const Leg> legs, const motion::Point& from);
@@ -107,6 +120,10 @@ private:
     bool rests_again_ = false;  // as soon as it has returned
     std::array<bool, config::heater_count> standby_{};
     std::uint32_t layer_ = 0;
+    JournalWriter* journal_ = nullptr;
+    JournalEntry noted_;
+    std::optional<double> lift_from_mm_;  // a height: before the path begins
+    StepPositions lifted_steps_{};        // by that lift
     std::string message_;
     std::optional<std::string> ended_by_;
 };

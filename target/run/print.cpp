@@ -230,44 +230,87 @@ void report_on(const Executor& executor, const gpio::TracingClock& clock, PrintR
     report.lateness = clock.histogram();
 }
 
+// None: the print has no journal, or cannot have one, which is a warning.
+std::unique_ptr<JournalWriter> journal_for(const PrintJob& job, FileIdentity& identity,
+                                           Diagnostics& warnings) {
+    if (job.journal.empty()) return nullptr;
+    const Result<FileIdentity> file = identity_of(job.file);
+    Result<Journal> journal = Journal::open(job.journal);
+    if (file && journal) {
+        identity = *file;
+        return std::make_unique<JournalWriter>(std::move(*journal));
+    }
+    warnings.push_back(file ? journal.error() : file.error());
+    warnings.back().severity = Severity::warning;
+    warnings.back().message += "; this print cannot be resumed after a loss of power";
+    return nullptr;
+}
+
+// All that a print has beside its job, until its threads have ended.
+struct Running {
+    Running(const PrintJob& job, const Inspection& inspection, gpio::GpioChip& chip,
+            gpio::Clock& clock, Heating* heating)
+        : printer(job.resumption ? lifted(job.printer, *job.resumption) : job.printer),
+          shared(job.control ? *job.control : own_control, {heating != nullptr, can_resume(job)}),
+          traced(clock),
+          executor(chip, traced, executor_timing(printer), shared.stop_requests, &shared.marks,
+                   &shared.course.wanted_pace),
+          life(printer, shared.control, shared.course, shared.layers, shared.desk,
+               {job.file, inspection.totals.layers, inspection.header.summary.estimated_time_s}) {
+        if (heating) life.cut = [heating] { (void)heating->stage->all_off(); };
+        if (job.resumption) life.begin_with(*job.resumption, job.is_lifted);
+    }
+
+    config::Printer printer;
+    PrintControl own_control;
+    Shared shared;
+    gpio::TracingClock traced;
+    Executor executor;
+    Life life;
+    Outcome outcome;
+};
+
+// The real-time thread.
+void drive(Running& running, gpio::GpioChip& chip, Diagnostics& warnings) {
+    Shared& shared = running.shared;
+    take_precedence(warnings);
+    while (!shared.filled.load() && !shared.stop_requests.load())
+        std::this_thread::sleep_for(executor_nap);
+    running.outcome.executed = drain(running.executor, running.traced, shared);
+    const Status released = chip.release();
+    if (!released && running.outcome.executed) running.outcome.executed = released.error();
+    shared.finished.store(true);
+}
+
 Result<PrintReport> run(const PrintJob& job, const Prepared& prepared, gpio::GpioChip& chip,
                         gpio::Clock& clock, Heating* heating) {
-    PrintControl own_control;
-    Shared shared(job.control ? *job.control : own_control, {heating != nullptr, can_resume(job)});
     const Inspection& inspection = prepared.inspection;
+    Running running(job, inspection, chip, clock, heating);
+    Shared& shared = running.shared;
+    Life& life = running.life;
     Result<EventStream> stream =
-        EventStream::open(job.file, job.printer, inspection.filament_diameter_mm, &shared.orders);
+        EventStream::open(job.file, running.printer, inspection.filament_diameter_mm,
+                          &shared.orders, job.resumption ? job.resumption->first_layer : 0);
     if (!stream) return stream.error();
     const StopSignals signals;
     PrintReport report;
     report.warnings = prepared.notes;
+    FileIdentity identity;
+    const std::unique_ptr<JournalWriter> journal = journal_for(job, identity, report.warnings);
+    life.keep_journal(journal.get(), identity);
     lock_memory(report.warnings);
-    gpio::TracingClock traced(clock);
-    Executor executor(chip, traced, executor_timing(job.printer), shared.stop_requests,
-                      &shared.marks, &shared.course.wanted_pace);
-    Life life(job.printer, shared.control, shared.course, shared.layers, shared.desk,
-              {job.file, inspection.totals.layers, inspection.header.summary.estimated_time_s});
-    if (heating) life.cut = [heating] { (void)heating->stage->all_off(); };
-    Outcome outcome;
     Tending tending(heating, shared);
-    std::thread planner([&] { outcome.planned = fill(*stream, shared); });
-    std::thread edges([&] {
-        take_precedence(report.warnings);
-        while (!shared.filled.load() && !shared.stop_requests.load())
-            std::this_thread::sleep_for(executor_nap);
-        outcome.executed = drain(executor, traced, shared);
-        const Status released = chip.release();
-        if (!released && outcome.executed) outcome.executed = released.error();
-        shared.finished.store(true);
-    });
+    std::thread planner([&] { running.outcome.planned = fill(*stream, shared); });
+    std::thread edges([&] { drive(running, chip, report.warnings); });
     watch(signals, shared, job, inspection, life, heating);
     edges.join();
     planner.join();
     tending.join();
-    const Status status = status_of(shared, life, outcome);
-    life.end(status, outcome.executed.ok() && shared.stop_requests < 2);
+    const Status status = status_of(shared, life, running.outcome);
+    life.end(status, running.outcome.executed.ok() && shared.stop_requests < 2);
+    if (journal && (status || life.is_cancelled())) journal->remove();
     if (!status) return status.error();
-    report_on(executor, traced, report);
+    report_on(running.executor, running.traced, report);
     report.paused_s = life.paused_s();
     return report;
 }

@@ -13,7 +13,9 @@
 //     once; both end with status stopped.
 //  5. The pulses are those of the simulation, in the same order, with at least the same gaps.
 //  6. Commands of `control` are served as life.h says, by this thread; it tells there what the print is, to its end.
-//  7. Where the head is afterwards is known unless the message says that its position is lost.
+//  7. With a journal (journal.h) the print can be resumed after it was cut off, also by a signal or a guard; one that is done
+//     or cancelled takes it away. A journal that cannot be written is a warning.
+//  8. Where the head is afterwards is known unless the message says that its position is lost.
 
 #pragma once
 
@@ -22,6 +24,7 @@
 #include "target/gpio/clock.h"
 #include "target/gpio/gpio_chip.h"
 #include "target/run/heating.h"
+#include "target/run/resumption.h"
 #include "target/run/simulate.h"
 
 namespace lyr::run {
@@ -32,6 +35,9 @@ struct PrintJob {
     bool no_heat = false;
     ProgressSink progress;
     PrintControl* control = nullptr;  // none: only signals and buttons do something
+    std::string journal{};            // its path; empty: none
+    std::optional<Resumption> resumption{};
+    bool is_lifted = false;  // for the resumption, and at start_mm in x and y: homed
 };
 
 struct PrintReport {

@@ -43,6 +43,11 @@ Diagnostic tripped(const thermal::SimulatedHeat& heat, std::uint32_t layer) {
     return error;
 }
 
+// Whether anybody asks anything of the print.
+bool lives(const SimulationJob& job) {
+    return !job.script.empty() || job.control || job.resumption;
+}
+
 // Everything that a simulation is made of, in the order in which the steps pass through it.
 class Simulation {
 public:
@@ -67,6 +72,7 @@ public:
           layout_(line_layout(job.printer)),
           mock_(layout_.names.size(), clock_,
                 [this](const gpio::LineWrite& write) { decode(write); }) {
+        if (job.resumption) life_.begin_with(*job.resumption, false);
         if (is_lived()) clock_.on_tick = [this](double time_s) { live(time_s); };
     }
 
@@ -82,8 +88,7 @@ private:
         write.time_ns -= executor_ ? executor_->behind_ns() : 0;
         decoder_.write(write);
     }
-    // Whether anybody asks anything of it.
-    bool is_lived() const { return !job_.script.empty() || job_.control; }
+    bool is_lived() const { return lives(job_); }
     void live(double time_s);
     Diagnostic why_ended() const;
     bool asked_to_stop(const Executor& executor) const;
@@ -209,9 +214,8 @@ Heed heed(const Inspection& inspection, const SimulationJob& job) {
     const bool asked = !inspection.demands.hottest.empty();
     const auto possible = [&](bool no_heat) {
         result.notes.clear();
-        const bool can_resume = !job.script.empty() || job.control;
         const Status checked =
-            check_demands(inspection, job.printer, no_heat, result.notes, can_resume);
+            check_demands(inspection, job.printer, no_heat, result.notes, lives(job));
         if (checked) return true;
         result.notes.push_back(checked.error());
         result.notes.back().severity = Severity::warning;
@@ -228,7 +232,13 @@ Heed heed(const Inspection& inspection, const SimulationJob& job) {
 
 }  // namespace
 
-Result<SimulationReport> simulate(const SimulationJob& job) {
+Result<SimulationReport> simulate(const SimulationJob& asked) {
+    SimulationJob job = asked;
+    std::uint32_t first_layer = 0;
+    if (job.resumption) {
+        job.printer = lifted(job.printer, *job.resumption);
+        first_layer = job.resumption->first_layer;
+    }
     std::optional<ReplaceFile> trace;
     if (job.trace) {
         Result<ReplaceFile> opened = ReplaceFile::open(*job.trace);
@@ -239,12 +249,12 @@ Result<SimulationReport> simulate(const SimulationJob& job) {
     if (!inspection) return inspection.error();
     const double diameter_mm = inspection->filament_diameter_mm;
     Heed heeded = heed(*inspection, job);
-    const bool is_lived = !job.script.empty() || job.control;
-    OrderQueue orders({heeded.heats, is_lived});
-    OrderQueue* wanted = heeded.heats || is_lived ? &orders : nullptr;
-    Result<EventStream> stream = EventStream::open(job.file, job.printer, diameter_mm, wanted);
+    OrderQueue orders({heeded.heats, lives(job)});
+    OrderQueue* wanted = heeded.heats || lives(job) ? &orders : nullptr;
+    Result<EventStream> stream =
+        EventStream::open(job.file, job.printer, diameter_mm, wanted, first_layer);
     if (!stream) return stream.error();
-    Result<format::Reader> reader = open_file(job.file);
+    Result<format::Reader> reader = open_file(job.file, first_layer);
     if (!reader) return reader.error();
     Simulation simulation(job, *inspection, std::move(*stream),
                           FilePath(std::move(*reader), job.printer.start_mm, diameter_mm), wanted,

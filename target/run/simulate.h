@@ -29,6 +29,7 @@
 #include "target/run/path_check.h"
 #include "target/run/print_control.h"
 #include "target/run/pulse_decoder.h"
+#include "target/run/resumption.h"
 #include "target/thermal/faults.h"
 
 namespace lyr::run {
@@ -53,6 +54,7 @@ struct SimulationJob {
     std::vector<thermal::Fault> faults{};
     std::vector<TimedCommand> script{};  // in order of time
     PrintControl* control = nullptr;     // to look on from outside
+    std::optional<Resumption> resumption{};
 };
 
 // What a heater did.
