@@ -106,6 +106,11 @@ void Life::rest_for(Command reason) {
     rests_again_ = phase_ == Phase::returning;
     reason_ = reason;
     message_.clear();
+    if (cancels()) {
+        // What is left to do needs no heat but that which is there.
+        standby_.fill(true);
+        desk_.set_standby(standby_);
+    }
     if (phase_ == Phase::resting && unloads) unload();
     if (phase_ != Phase::printing) return;
     course_.wanted_pace.store(0);
@@ -242,6 +247,10 @@ void Life::lift() {
 
 void Life::note() {
     if (!journal_) return;
+    if (const auto error = journal_->take_error()) {
+        journal_error_ = error;
+        message_ = error->message;
+    }
     JournalEntry entry = noted_;
     entry.layer = layer_;
     entry.parked_nm.reset();
@@ -253,7 +262,14 @@ void Life::note() {
     noted_ = entry;
     noted_.time_ns = course_.time_ns.load();
     journal_->post(noted_);
-    if (const auto error = journal_->take_error()) message_ = error->message;
+}
+
+void Life::press(std::size_t input) {
+    const bool goes_on = phase_ == Phase::resting && input == config::input_pause;
+    const std::array<Command, config::input_count> meant{
+        goes_on ? Command(Resume{}) : Command(Pause{}), Cancel{}, EmergencyStop{},
+        ChangeFilament{}};
+    (void)control_.post(meant[input]);
 }
 
 void Life::go_back() {

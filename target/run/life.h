@@ -10,7 +10,8 @@
 //     purges, and the path goes on with the event at which it was left.
 //  2. Filament is moved only if the tool has min_extrude_c, before a resume it is heated and waited for.
 //  3. A pause that lasts for longer than printer.toml says lets tool, bed and chamber go cold.
-//  4. A cancel parks too, and ends by a request to stop; an emergency stop does so at once, and calls `cut`.
+//  4. A cancel takes all heat away, parks too, and ends by a request to stop; an emergency stop does so at once, and calls
+//     `cut`.
 //  5. What cannot be done as things are is refused, and status().message says why.
 //  6. Commands take effect within the next tick.
 //  7. With a journal, each layer is noted there when the head begins it, and where the head is parked; a journal that
@@ -56,12 +57,15 @@ public:
     void begin_with(const Resumption& resumption, bool is_lifted);
 
     void tick(double now_s);
+    // A button or sensor of the printer; of config's InputNumber.
+    void press(std::size_t input);
     // What the print came to; the last status.
     void end(const Status& result, bool is_position_known);
 
     std::uint32_t layer() const { return layer_; }
     // From leaving the path to being back.
     double paused_s() const { return paused_s_; }
+    const std::optional<Diagnostic>& journal_error() const { return journal_error_; }
     bool rests() const { return phase_ == Phase::resting; }
     bool is_cancelled() const { return ended_by_ && cancels(); }
     // Ended by command: what to say.
@@ -122,6 +126,7 @@ private:
     std::uint32_t layer_ = 0;
     JournalWriter* journal_ = nullptr;
     JournalEntry noted_;
+    std::optional<Diagnostic> journal_error_;
     std::optional<double> lift_from_mm_;  // a height: before the path begins
     StepPositions lifted_steps_{};        // by that lift
     std::string message_;

@@ -44,6 +44,12 @@ using ProgressSink = std::function<void(const Progress&)>;
 // Asked now and then; true ends the simulation with status stopped.
 using StopQuestion = std::function<bool()>;
 
+// What else may happen to a board.
+struct LineFaults {
+    gpio::MockChip::Fault motors{}, heaters{};  // by the number of the write
+    std::vector<double> signals_s{};            // times of SIGTERM, in order
+};
+
 struct SimulationJob {
     std::string file;
     config::Printer printer;
@@ -55,6 +61,9 @@ struct SimulationJob {
     std::vector<TimedCommand> script{};  // in order of time
     PrintControl* control = nullptr;     // to look on from outside
     std::optional<Resumption> resumption{};
+    LineFaults line_faults{};
+    // After each tick of the heaters, and at the end.
+    std::function<void(double time_s, bool any_heater_on)> heat_watch{};
 };
 
 // What a heater did.
