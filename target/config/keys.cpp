@@ -6,6 +6,7 @@
 
 #include "target/config/homing_keys.h"
 #include "target/config/key_rules.h"
+#include "target/config/life_keys.h"
 #include "target/config/machine_keys.h"
 
 namespace lyr::config {
@@ -98,6 +99,7 @@ std::vector<Key> printer_keys() {
     for (std::size_t i = 0; i < axis_count; ++i) append_axis(keys, i);
     append_heat_keys(keys);
     append_homing_keys(keys);
+    append_life_keys(keys);
     return keys;
 }
 

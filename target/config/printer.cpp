@@ -17,6 +17,7 @@
 #include "base/nearest_name.h"
 #include "target/config/homing_keys.h"
 #include "target/config/keys.h"
+#include "target/config/life_keys.h"
 #include "target/config/machine_keys.h"
 
 namespace lyr::config {
@@ -158,6 +159,8 @@ std::vector<std::pair<std::string, std::optional<Pin>*>> lines_of(Printer& print
         lines.emplace_back("axis." + std::string(axis_names[i]) + ".endstop",
                            &printer.endstops[i].input);
     if (printer.probe) lines.emplace_back("probe.input", &printer.probe->input);
+    for (std::size_t i = 0; i < input_count; ++i)
+        lines.emplace_back("input." + std::string(input_names[i]), &printer.inputs[i]);
     return lines;
 }
 
@@ -231,7 +234,8 @@ void Walk::check_pulses() {
 void Walk::check_machine() {
     const auto given = [this](const std::string& path) { return places_.count(path) != 0; };
     for (const auto& problems :
-         {machine_problems(draft_.printer, given), homing_problems(draft_.printer, given)})
+         {machine_problems(draft_.printer, given), homing_problems(draft_.printer, given),
+          life_problems(draft_.printer)})
         for (const auto& [path, message] : problems) problem(place(path), path + message);
 }
 

@@ -31,6 +31,7 @@
 #include "base/diagnostic.h"
 #include "target/config/heater.h"
 #include "target/config/homing.h"
+#include "target/config/life.h"
 
 namespace lyr::config {
 
@@ -101,6 +102,11 @@ struct Printer {
     // What the file says by itself, and which keys of the calibration stand above it.
     std::shared_ptr<const Printer> uncalibrated{};
     std::vector<std::string> calibrated{};
+    Inputs inputs;
+    PauseSettings pause;
+    FilamentSettings filament;
+    std::string recovery_folder;  // of the journals of prints; empty: beside each print
+    WatchdogSettings watchdog;
 };
 
 // A middling Cartesian printer without lines and with room for any part, to simulate without a file.

@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "base/text.h"
 #include "target/gpio/tracing_chip.h"
 #include "target/run/demands.h"
 #include "target/run/event_stream.h"
 #include "target/run/executor.h"
 #include "target/run/heating.h"
+#include "target/run/life.h"
 #include "target/run/simulated_clock.h"
 #include "target/run/step_checks.h"
 
@@ -26,6 +28,13 @@ Diagnostic stopped() {
     return {Severity::error, ExitStatus::stopped, "the simulation was stopped on request", {}};
 }
 
+Diagnostic ended(double time_s, std::uint32_t layer, const std::string& why) {
+    return {Severity::error,
+            ExitStatus::stopped,
+            formatted("after %.1f s, in layer %u: ", time_s, layer) + why,
+            {}};
+}
+
 Diagnostic tripped(const thermal::SimulatedHeat& heat, std::uint32_t layer) {
     char text[64];
     std::snprintf(text, sizeof text, "after %.1f s, in layer %u: ", *heat.tripped_s(), layer);
@@ -34,25 +43,46 @@ Diagnostic tripped(const thermal::SimulatedHeat& heat, std::uint32_t layer) {
     return error;
 }
 
+// Whether anybody asks anything of the print.
+bool lives(const SimulationJob& job) {
+    return !job.script.empty() || job.control || job.resumption ||
+           !job.line_faults.signals_s.empty();
+}
+
 // Everything that a simulation is made of, in the order in which the steps pass through it.
 class Simulation {
 public:
     // `orders` is none, or where the stream puts what is to be heated.
     Simulation(const SimulationJob& job, const Inspection& inspection, EventStream stream,
-               FilePath file, OrderQueue* orders)
+               FilePath file, OrderQueue* orders, bool heats)
         : job_(job),
           inspection_(inspection),
-          heats_(orders != nullptr),
-          heat_(job.printer, heats_ ? job.faults : std::vector<thermal::Fault>()),
-          attendant_(orders ? *orders : no_orders_, marks_, heat_.control()),
-          clock_(heat_, attendant_, stop_),
+          heats_(heats),
+          control_(job.control ? *job.control : own_control_),
+          marked_(orders != nullptr),
+          heat_(job.printer, heats_ ? job.faults : std::vector<thermal::Fault>(),
+                job.line_faults.heaters),
+          attendant_(orders ? *orders : no_orders_, marks_, heats ? &heat_.control() : nullptr,
+                     is_lived() ? &desk_ : nullptr),
+          clock_(heat_, attendant_, control_.stop_requests()),
+          life_(job.printer, control_, course_, layers_, desk_,
+                {job.file, inspection.totals.layers, inspection.header.summary.estimated_time_s}),
           stream_(std::move(stream)),
           file_(std::move(file)),
           checks_(job.printer, [this](PathCurve& curve) { return file_.next(curve); }),
           decoder_([this](const DecodedStep& step) { checks_.step(step); }),
           layout_(line_layout(job.printer)),
-          mock_(layout_.names.size(), clock_,
-                [this](const gpio::LineWrite& write) { decode(write); }) {}
+          mock_(
+              layout_.names.size(), clock_, [this](const gpio::LineWrite& write) { decode(write); },
+              job.line_faults.motors) {
+        // Without its switch a heater is cold at once.
+        life_.cut = [this] { heat_.release(); };
+        if (job.heat_watch)
+            heat_.observe(
+                [this](double time_s) { job_.heat_watch(time_s, heat_.any_heater_on()); });
+        if (job.resumption) life_.begin_with(*job.resumption, false);
+        if (is_lived()) clock_.on_tick = [this](double time_s) { live(time_s); };
+    }
 
     // `trace` is none, or the file to write the wave to.
     Status run(ReplaceFile* trace);
@@ -60,22 +90,35 @@ public:
 
 private:
     Status pump(Executor& executor, ReplaceFile* trace);
-    // Waits for temperatures are no part of the plan's time.
+    // Waits, rests and what the head does meanwhile are no part of the plan.
     void decode(gpio::LineWrite write) {
-        write.time_ns -= executor_ ? executor_->waited_ns() : 0;
+        if (executor_ && executor_->on_trip()) return;
+        write.time_ns -= executor_ ? executor_->behind_ns() : 0;
         decoder_.write(write);
     }
+    bool is_lived() const { return lives(job_); }
+    void live(double time_s);
+    Diagnostic why_ended() const;
     bool asked_to_stop(const Executor& executor) const;
 
     const SimulationJob& job_;
     const Inspection& inspection_;
     bool heats_;
+    PrintControl own_control_;
+    PrintControl& control_;
+    bool marked_;
     OrderQueue no_orders_;
     Marks marks_;
-    StopRequests stop_{0};
+    HeatDesk desk_;
     thermal::SimulatedHeat heat_;
     HeatAttendant attendant_;
     SimulatedClock clock_;
+    Course course_;
+    LayerLog layers_;
+    Life life_;
+    std::size_t posted_ = 0, signalled_ = 0;  // of the script and of the signals
+    StepPositions trip_steps_{};
+    bool is_derailed_ = false;  // a write failed
     const Executor* executor_ = nullptr;
     EventStream stream_;
     FilePath file_;
@@ -90,10 +133,15 @@ Status Simulation::run(ReplaceFile* trace) {
     std::optional<gpio::TracingChip> tracing;
     if (trace) tracing.emplace(mock_, clock_, layout_.names, *trace);
     gpio::GpioChip& chip = tracing ? static_cast<gpio::GpioChip&>(*tracing) : mock_;
-    Executor executor(chip, clock_, executor_timing(job_.printer), stop_,
-                      heats_ ? &marks_ : nullptr);
+    Executor executor(chip, clock_, executor_timing(job_.printer), control_.stop_requests(),
+                      marked_ ? &marks_ : nullptr, &course_.wanted_pace);
     executor_ = &executor;
     Status pumped = pump(executor, trace);
+    heat_.release();
+    if (job_.heat_watch)
+        job_.heat_watch(static_cast<double>(clock_.now_ns()) / ns_per_s, heat_.any_heater_on());
+    life_.end(pumped, !is_derailed_ && control_.stop_requests() < 2);
+    trip_steps_ = executor.trip_steps();
     print_time_s_ = static_cast<double>(executor.time_ns()) / ns_per_s;
     waited_s_ = static_cast<double>(executor.waited_ns()) / ns_per_s;
     if (!pumped) return pumped;
@@ -111,14 +159,35 @@ Status Simulation::pump(Executor& executor, ReplaceFile* trace) {
         const Result<bool> more = stream_.next(events);
         if (!more) return more.error();
         checks_.expect(stream_.steps().moves(), stream_.schedule().take_shifts());
-        const Result<bool> executed = executor.execute(events);
+        layers_.begin(stream_.steps().begun(), stream_.schedule().shift_ns());
+        const Result<bool> executed =
+            follow(events, executor, course_, clock_, control_.stop_requests());
+        is_derailed_ = !executed.ok();
         if (!executed) return executed.error();
-        if (!*executed) return tripped(heat_, stream_.steps().layer());
+        if (!*executed) return why_ended();
         if (!*more) return Done{};
         if (batch % batches_between_questions != 0) continue;
         if (trace && trace->failed()) return trace->flush();
         if (asked_to_stop(executor)) return stopped();
     }
+}
+
+void Simulation::live(double time_s) {
+    for (; posted_ < job_.script.size() && job_.script[posted_].time_s <= time_s; ++posted_)
+        (void)control_.post(job_.script[posted_].command);
+    const std::vector<double>& signals_s = job_.line_faults.signals_s;
+    for (; signalled_ < signals_s.size() && signals_s[signalled_] <= time_s; ++signalled_)
+        ++control_.stop_requests();
+    life_.tick(time_s);
+    if (life_.rests() && signals_s.empty() && posted_ == job_.script.size() && !job_.control)
+        ++control_.stop_requests();
+}
+
+Diagnostic Simulation::why_ended() const {
+    if (heat_.control().trip()) return tripped(heat_, stream_.steps().layer());
+    return ended(static_cast<double>(clock_.now_ns()) / ns_per_s, life_.layer(),
+                 life_.ended_by().value_or(signalled_ ? "stopped on request"
+                                                      : "the script ends, and the print rests"));
 }
 
 bool Simulation::asked_to_stop(const Executor& executor) const {
@@ -142,6 +211,8 @@ SimulationReport Simulation::report() const {
     report.path = checks_.off_file();
     report.planned_steps = checks_.off_plan();
     report.waited_s = waited_s_;
+    report.paused_s = life_.paused_s();
+    report.trip_steps = trip_steps_;
     for (std::size_t i = 0; i < config::heater_count; ++i) {
         const thermal::HeaterStatus* status = heat_.control().status(i);
         if (heats_ && status && status->on_s > 0)
@@ -161,7 +232,8 @@ Heed heed(const Inspection& inspection, const SimulationJob& job) {
     const bool asked = !inspection.demands.hottest.empty();
     const auto possible = [&](bool no_heat) {
         result.notes.clear();
-        const Status checked = check_demands(inspection, job.printer, no_heat, result.notes);
+        const Status checked =
+            check_demands(inspection, job.printer, no_heat, result.notes, lives(job));
         if (checked) return true;
         result.notes.push_back(checked.error());
         result.notes.back().severity = Severity::warning;
@@ -178,7 +250,13 @@ Heed heed(const Inspection& inspection, const SimulationJob& job) {
 
 }  // namespace
 
-Result<SimulationReport> simulate(const SimulationJob& job) {
+Result<SimulationReport> simulate(const SimulationJob& asked) {
+    SimulationJob job = asked;
+    std::uint32_t first_layer = 0;
+    if (job.resumption) {
+        job.printer = lifted(job.printer, *job.resumption);
+        first_layer = job.resumption->first_layer;
+    }
     std::optional<ReplaceFile> trace;
     if (job.trace) {
         Result<ReplaceFile> opened = ReplaceFile::open(*job.trace);
@@ -189,14 +267,16 @@ Result<SimulationReport> simulate(const SimulationJob& job) {
     if (!inspection) return inspection.error();
     const double diameter_mm = inspection->filament_diameter_mm;
     Heed heeded = heed(*inspection, job);
-    OrderQueue orders;
-    OrderQueue* wanted = heeded.heats ? &orders : nullptr;
-    Result<EventStream> stream = EventStream::open(job.file, job.printer, diameter_mm, wanted);
+    OrderQueue orders({heeded.heats, lives(job)});
+    OrderQueue* wanted = heeded.heats || lives(job) ? &orders : nullptr;
+    Result<EventStream> stream =
+        EventStream::open(job.file, job.printer, diameter_mm, wanted, first_layer);
     if (!stream) return stream.error();
-    Result<format::Reader> reader = open_file(job.file);
+    Result<format::Reader> reader = open_file(job.file, first_layer);
     if (!reader) return reader.error();
     Simulation simulation(job, *inspection, std::move(*stream),
-                          FilePath(std::move(*reader), job.printer.start_mm, diameter_mm), wanted);
+                          FilePath(std::move(*reader), job.printer.start_mm, diameter_mm), wanted,
+                          heeded.heats);
     if (const Status run = simulation.run(trace ? &*trace : nullptr); !run) return run.error();
     if (trace)
         if (const Status written = trace->commit(); !written) return written.error();

@@ -6,7 +6,8 @@
 //  2. Memory is bounded: it does not grow with the file.
 //  3. After next(), moves() are the planned moves that the batch has begun, in order; they belong to the
 //     steps from here on.
-//  4. With a queue, each order for heaters and fans is put there, and a mark among the steps where the motion has
+//  4. It begins with the layer `first_layer`, from 0, as if nothing had been before.
+//  5. With a queue, each order for heaters and fans is put there, and a mark among the steps where the motion has
 //     come so far; for one that waits, the motion stops first. Without, orders are left out.
 
 #pragma once
@@ -22,10 +23,17 @@
 
 namespace lyr::run {
 
+// From this time on, of the steps or of the events, the head is in this layer, from 1.
+struct LayerBegin {
+    std::int64_t time_ns = 0;
+    std::uint32_t layer = 0;
+};
+
 class StepStream {
 public:
     static Result<StepStream> open(const std::string& path, const config::Printer& printer,
-                                   double filament_diameter_mm, OrderQueue* orders = nullptr);
+                                   double filament_diameter_mm, OrderQueue* orders = nullptr,
+                                   std::uint32_t first_layer = 0);
 
     // Appends the next steps; false: these were the last.
     Result<bool> next(std::vector<Step>& steps);
@@ -35,6 +43,8 @@ public:
     std::int64_t time_ns() const { return planner_.time_ns() + generator_.tail_ns(); }
     // Of the move begun last, from 1; 0 before the first.
     std::uint32_t layer() const { return layer_; }
+    // Layers that the batch has begun.
+    const std::vector<LayerBegin>& begun() const { return begun_; }
 
 private:
     // An order and the number of the move that it stands before.
@@ -48,7 +58,7 @@ private:
 
     Status plan();
     Status plan(const motion::Move& move);
-    Status plan(const HeatOrder& order);
+    Status plan(const HeatOrder& asked);
     // Appends the next steps of what is known, at most so many; how many events they were.
     std::size_t take(std::size_t most, std::vector<Step>& steps);
     bool finish(std::vector<Step>& steps);
@@ -67,6 +77,7 @@ private:
     std::vector<motion::PlannedMove> moves_;
     std::vector<motion::StepEvent> events_;
     std::uint32_t layer_ = 0;
+    std::vector<LayerBegin> begun_;
     std::int64_t last_ns_ = 0;  // of the steps so far
 };
 

@@ -1,0 +1,40 @@
+#include "target/run/print_control.h"
+
+#include <utility>
+
+namespace lyr::run {
+
+bool PrintControl::post(const Command& command) {
+    // As after a second Ctrl-C: the pulse that is out ends, and nothing follows.
+    constexpr int at_once = 2;
+    const bool is_emergency = std::holds_alternative<EmergencyStop>(command);
+    if (is_emergency) stop_requests_ += at_once;
+    const std::lock_guard lock(mutex_);
+    if (is_emergency) {
+        waiting_.push_front(command);
+        return true;
+    }
+    if (waiting_.size() >= most_waiting) return false;
+    waiting_.push_back(command);
+    return true;
+}
+
+PrintStatus PrintControl::status() const {
+    const std::lock_guard lock(mutex_);
+    return status_;
+}
+
+std::optional<Command> PrintControl::take() {
+    const std::lock_guard lock(mutex_);
+    if (waiting_.empty()) return std::nullopt;
+    const Command command = waiting_.front();
+    waiting_.pop_front();
+    return command;
+}
+
+void PrintControl::publish(PrintStatus status) {
+    const std::lock_guard lock(mutex_);
+    status_ = std::move(status);
+}
+
+}  // namespace lyr::run
