@@ -1,0 +1,52 @@
+// The control thread: serves the clients of the socket, and the web page if there is one.
+//
+// Contract
+//  1. Nothing that clients do holds the print up: they are served by one thread of ordinary priority, which never waits
+//     for any of them.
+//  2. What it holds is bounded: most_clients, each with what session.h says. One more gets a refusal and is closed.
+//  3. A client that takes nothing of what waits for it for stuck_s is closed. One that has only stopped sending gets
+//     all its answers first.
+//  4. A client that has subscribed is told the status in its interval, once more at the end, and never a second one
+//     while it has not taken the first.
+//  5. Signals go to other threads.
+
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "target/control/dispatcher.h"
+#include "target/control/listener.h"
+
+namespace lyr::control {
+
+// What else the thread serves.
+struct Guest {
+    int descriptor = -1;
+    // When the descriptor is readable, and once in guest_period at least.
+    std::function<void()> serve;
+};
+
+class Server {
+public:
+    static constexpr std::size_t most_clients = 16;
+    static constexpr std::chrono::seconds stuck_time{10};
+    static constexpr std::chrono::milliseconds guest_period{250};
+
+    // All that is referred to must outlive it.
+    Server(std::optional<Listener> listener, Dispatcher& dispatcher, std::optional<Guest> guest);
+    ~Server();
+    Server(const Server&) = delete;
+    Server& operator=(const Server&) = delete;
+
+private:
+    class Work;
+
+    std::unique_ptr<Work> work_;
+    std::thread thread_;
+};
+
+}  // namespace lyr::control
