@@ -125,4 +125,14 @@ void append_pin(std::vector<Key>& keys, const std::string& path, const PinPlace&
                         [pin_of](Draft& draft, bool value) { pin_of(draft).active_low = value; }));
 }
 
+void append_input(std::vector<Key>& keys, const std::string& path, const PinPlace& place) {
+    static constexpr std::array<std::string_view, 4> pulls{"as_is", "up", "down", "none"};
+    append_pin(keys, path, place);
+    keys.push_back(choice(path + ".pull", pulls, [place](Draft& draft, std::size_t pull) {
+        std::optional<Pin>& pin = place(draft);
+        if (!pin) pin.emplace();
+        pin->pull = static_cast<Pull>(pull);
+    }));
+}
+
 }  // namespace lyr::config

@@ -4,7 +4,9 @@
 
 #include <cmath>
 
+#include "target/config/homing_keys.h"
 #include "target/config/key_rules.h"
+#include "target/config/life_keys.h"
 #include "target/config/machine_keys.h"
 
 namespace lyr::config {
@@ -77,6 +79,9 @@ std::vector<Key> printer_keys() {
         text("name", [](Draft& d, const std::string& value) { d.printer.name = value; }));
     append_machine_keys(keys);
     keys.push_back(text("chip", [](Draft& d, const std::string& value) { d.chip = value; }));
+    keys.push_back(text("calibration_file", [](Draft& d, const std::string& value) {
+        d.printer.calibration_file = value;
+    }));
     keys.push_back(start_key());
     keys.push_back(number("junction_deviation_mm", {0, 1},
                           [](Draft& d, double v) { d.printer.junction_deviation_mm = v; }));
@@ -93,6 +98,8 @@ std::vector<Key> printer_keys() {
         nanoseconds("pulse.late_limit_ms", {0.01, 10'000}, ns_per_ms, &PulseTiming::late_limit_ns));
     for (std::size_t i = 0; i < axis_count; ++i) append_axis(keys, i);
     append_heat_keys(keys);
+    append_homing_keys(keys);
+    append_life_keys(keys);
     return keys;
 }
 

@@ -3,8 +3,6 @@
 
 #include "target/gpio/gpiod_chip.h"
 
-#include <gpiod.h>
-
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -12,30 +10,14 @@
 #include <utility>
 #include <vector>
 
+#include "target/gpio/gpiod_lines.h"
+
 namespace lyr::gpio {
 namespace {
 
-constexpr const char* consumer = "lyrrun";
-
-Diagnostic machine_error(std::string message) {
-    return {Severity::error, ExitStatus::machine, std::move(message), {}};
-}
-
-std::string line_text(const LineRequest& request) {
-    const auto* number = std::get_if<std::uint32_t>(&request.line);
-    const std::string line =
-        number ? std::to_string(*number) : '"' + std::get<std::string>(request.line) + '"';
-    return request.purpose + ": line " + line + " of " + request.chip;
-}
-
-struct CloseChip {
-    // Closing a chip releases all lines held through it.
-    void operator()(gpiod_chip* chip) const { ::gpiod_chip_close(chip); }
-};
-
 // The lines held on one kernel chip.
 struct Bank {
-    std::unique_ptr<gpiod_chip, CloseChip> chip;
+    ChipHandle chip;
     std::string name;
     gpiod_line_bulk bulk{};
     std::vector<std::size_t> lines;  // of the GpioChip, in the order of the bulk
@@ -91,55 +73,19 @@ private:
     LineMask inverted_;
 };
 
-Diagnostic cannot_open(const LineRequest& request, int error) {
-    std::string message =
-        request.purpose + ": cannot open GPIO chip " + request.chip + ": " + std::strerror(error);
-    if (error == EACCES || error == EPERM)
-        message += "; add the user to the group of /dev/gpiochip* (often: gpio)";
-    else
-        message += "; `gpiodetect` lists the chips of this machine";
-    return machine_error(std::move(message));
-}
-
 // The bank of the request's kernel chip, opened if it is the first line there. Two ways to write
 // the same chip ("0", "gpiochip0") are the same bank.
 Result<std::size_t> bank_for(std::vector<Bank>& banks, const LineRequest& request) {
-    // The library would take an empty name for chip number 0.
-    if (request.chip.empty()) return cannot_open(request, ENODEV);
-    errno = 0;
-    std::unique_ptr<gpiod_chip, CloseChip> chip(::gpiod_chip_open_lookup(request.chip.c_str()));
-    if (!chip) return cannot_open(request, errno ? errno : ENODEV);
-    const std::string name = ::gpiod_chip_name(chip.get());
+    Result<ChipHandle> chip = open_chip(request);
+    if (!chip) return chip.error();
+    const std::string name = ::gpiod_chip_name(chip->get());
     const auto known = std::find_if(banks.begin(), banks.end(),
                                     [&](const Bank& bank) { return bank.name == name; });
     if (known != banks.end()) return static_cast<std::size_t>(known - banks.begin());
     banks.emplace_back();
-    banks.back().chip = std::move(chip);
+    banks.back().chip = std::move(*chip);
     banks.back().name = name;
     return banks.size() - 1;
-}
-
-Result<gpiod_line*> find_line(gpiod_chip* chip, const LineRequest& request) {
-    gpiod_line* line = nullptr;
-    if (const auto* number = std::get_if<std::uint32_t>(&request.line)) {
-        const unsigned int count = ::gpiod_chip_num_lines(chip);
-        if (*number >= count)
-            return machine_error(line_text(request) + " does not exist: the chip has lines 0 to " +
-                                 std::to_string(count - 1));
-        line = ::gpiod_chip_get_line(chip, *number);
-    } else {
-        line = ::gpiod_chip_find_line(chip, std::get<std::string>(request.line).c_str());
-    }
-    if (!line)
-        return machine_error(line_text(request) + " was not found; `gpioinfo " + request.chip +
-                             "` lists the lines");
-    if (::gpiod_line_is_used(line)) {
-        const char* user = ::gpiod_line_consumer(line);
-        return machine_error(line_text(request) + " is already held by " +
-                             (user ? user : "the kernel") +
-                             "; choose another line or end its user");
-    }
-    return line;
 }
 
 Status add_line(std::vector<Bank>& banks, std::span<const LineRequest> requests,
@@ -166,7 +112,8 @@ Status hold(Bank& bank, std::span<const LineRequest> requests) {
     std::array<int, GPIOD_LINE_BULK_MAX_LINES> values{};
     for (std::size_t i = 0; i < bank.lines.size(); ++i)
         values[i] = requests[bank.lines[i]].active_low;
-    if (::gpiod_line_request_bulk_output(&bank.bulk, consumer, values.data()) == 0) return Done{};
+    if (::gpiod_line_request_bulk_output(&bank.bulk, line_consumer, values.data()) == 0)
+        return Done{};
     return machine_error("cannot request the lines of " + bank.name + " as outputs (" +
                          requests[bank.lines.front()].purpose +
                          " and others): " + std::strerror(errno));

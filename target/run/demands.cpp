@@ -75,7 +75,7 @@ Status check_heat(const Demands& demands, const config::Printer& printer) {
 }  // namespace
 
 Status check_demands(const Inspection& inspection, const config::Printer& printer, bool no_heat,
-                     Diagnostics& notes) {
+                     Diagnostics& notes, bool can_resume) {
     const Demands& demands = inspection.demands;
     if (no_heat && !demands.hottest.empty())
         notes.push_back(note("not heated: " + heat_text(demands)));
@@ -88,11 +88,11 @@ Status check_demands(const Inspection& inspection, const config::Printer& printe
                                        "file uses others"));
     if (!no_heat)
         if (Status possible = check_heat(demands, printer); !possible) return possible;
-    if (demands.pauses)
+    if (demands.pauses && !can_resume)
         return Diagnostic{Severity::error,
                           ExitStatus::unsupported,
                           "the file pauses " + std::to_string(demands.pauses) +
-                              " times, and this version cannot be told to go on",
+                              " times, and nobody could tell it to go on",
                           {}};
     return Done{};
 }

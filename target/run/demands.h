@@ -4,7 +4,7 @@
 //  1. Without `no_heat`, an error (status machine) names the first of: a heater that the printer does not have, a
 //     temperature within headroom_c of the end of its range_c or beyond, filament that is pushed while the tool has
 //     not surely reached min_extrude_c.
-//  2. Pauses are an error of status unsupported.
+//  2. Pauses are an error of status unsupported, unless somebody can tell the print to go on.
 //  3. What is passed over is noted: heat, if `no_heat`, and fans that the printer does not have.
 
 #pragma once
@@ -18,6 +18,6 @@ namespace lyr::run {
 inline constexpr double headroom_c = 5;
 
 Status check_demands(const Inspection& inspection, const config::Printer& printer, bool no_heat,
-                     Diagnostics& notes);
+                     Diagnostics& notes, bool can_resume = false);
 
 }  // namespace lyr::run

@@ -4,6 +4,7 @@
 #include "target/run/executor.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdio>
 
@@ -44,9 +45,30 @@ ExecutorTiming executor_timing(const config::Printer& printer) {
 }
 
 Result<bool> Executor::execute(std::span<const LineEvent> events) {
+    return run(events);
+}
+
+Result<bool> Executor::execute_trip(std::span<const LineEvent> events) {
+    path_ns_ = last_event_ns_;
+    on_trip_ = rebased_ = true;
+    pace_ = 1;
+    Result<bool> done = run(events);
+    on_trip_ = false;
+    last_event_ns_ = path_ns_;
+    go_on();
+    return done;
+}
+
+void Executor::go_on() {
+    rebased_ = true;
+    pace_ = started_ ? rest_pace : 1;
+}
+
+Result<bool> Executor::run(std::span<const LineEvent> events) {
+    taken_ = 0;
     for (const LineEvent& event : events) {
-        if (!started_ && stop_requests_.load(std::memory_order_relaxed) != 0) return false;
-        if (!started_) start(event);
+        if (!started_ && !on_trip_ && target_pace() == 0) return false;
+        if (rebased_) start(event);
         const std::int64_t planned_gap_ns = event.time_ns - last_event_ns_;
         const std::optional<std::int64_t> gap_ns = paced_gap_ns(planned_gap_ns);
         if (!gap_ns) return false;
@@ -62,64 +84,95 @@ Result<bool> Executor::execute(std::span<const LineEvent> events) {
         last_begin_ns_ = *begin_ns;
         if (((event.levels ^ levels_) & all_mark_bits) && !pass_mark(event)) return false;
         if (Status written = write(event, last_begin_ns_); !written) return written.error();
+        ++taken_;
     }
     return true;
 }
 
 void Executor::start(const LineEvent& event) {
-    started_ = true;
-    last_event_ns_ = event.time_ns;
+    rebased_ = false;
     last_begin_ns_ = last_end_ns_ = clock_.now_ns();
+    if (!on_trip_ && started_) return;
+    last_event_ns_ = event.time_ns;
+    if (on_trip_) return;
+    started_ = true;
+    base_ns_ = last_begin_ns_ - event.time_ns;
+}
+
+double Executor::target_pace() const {
+    if (stop_requests_.load(std::memory_order_relaxed) != 0) return 0;
+    if (!wanted_pace_ || on_trip_) return 1;
+    return static_cast<double>(wanted_pace_->load(std::memory_order_relaxed));
 }
 
 std::optional<std::int64_t> Executor::paced_gap_ns(std::int64_t gap_ns) {
-    const int requests = stop_requests_.load(std::memory_order_relaxed);
-    if (requests == 0) return gap_ns;
-    const bool pulse_out = (levels_ & all_step_bits) != 0;
-    const bool at_rest = requests > 1 || pace_ <= rest_pace || gap_ns > standing_ns;
-    if (at_rest) return pulse_out ? std::optional(gap_ns) : std::nullopt;
+    const double target = target_pace();
+    if (target == 1 && pace_ == 1) return gap_ns;
+    const bool stands = gap_ns > standing_ns;
+    if (target == 0) {
+        const bool at_once = stop_requests_.load(std::memory_order_relaxed) > 1;
+        const bool pulse_out = (levels_ & all_step_bits) != 0;
+        if (at_once || pace_ <= rest_pace || stands)
+            return pulse_out ? std::optional(gap_ns) : std::nullopt;
+    } else if (stands) {
+        pace_ = target;
+        return gap_ns;
+    }
     const double paced_ns = static_cast<double>(gap_ns) / pace_;
-    pace_ -= paced_ns / static_cast<double>(std::max<std::int64_t>(1, timing_.braking_ns));
-    pace_ = std::max(pace_, rest_pace);
+    const double change =
+        paced_ns / static_cast<double>(std::max<std::int64_t>(1, timing_.braking_ns));
+    pace_ = pace_ > target ? std::max({target, rest_pace, pace_ - change})
+                           : std::min(target, pace_ + change);
     return std::llround(paced_ns);
 }
 
 std::optional<std::int64_t> Executor::wait_until_ns(std::int64_t time_ns) {
     std::int64_t now_ns = last_end_ns_;
     while (time_ns - now_ns > wait_slice_ns) {
-        if (stop_requests_.load(std::memory_order_relaxed) != 0) return std::nullopt;
+        if (target_pace() == 0) return std::nullopt;
         now_ns = clock_.wait_until_ns(now_ns + wait_slice_ns);
     }
     return clock_.wait_until_ns(time_ns);
 }
 
 bool Executor::pass_mark(const LineEvent& event) {
-    ++marks_reached_;
+    if (!at_gate_) ++marks_reached_;
     if (!marks_) return true;
     marks_->reached.store(marks_reached_, std::memory_order_release);
     if (!((event.levels ^ levels_) & gate_bit)) return true;
     const std::int64_t from_ns = clock_.now_ns();
     std::int64_t now_ns = from_ns;
-    while (marks_->done.load(std::memory_order_acquire) != marks_reached_) {
-        if (stop_requests_.load(std::memory_order_relaxed) != 0) return false;
-        now_ns = clock_.wait_until_ns(now_ns + wait_slice_ns);
-    }
+    const auto is_open = [&] {
+        return marks_->done.load(std::memory_order_acquire) == marks_reached_;
+    };
+    while (!is_open() && target_pace() > 0) now_ns = clock_.wait_until_ns(now_ns + wait_slice_ns);
+    at_gate_ = !is_open();
     waited_ns_ += now_ns - from_ns;
     last_begin_ns_ = now_ns;
-    return true;
+    return !at_gate_;
 }
 
 Status Executor::write(const LineEvent& event, std::int64_t begin_ns) {
     const gpio::LineMask toggled = levels_ ^ event.levels;
     const gpio::LineMask lines = toggled & ~all_mark_bits;
     const bool only_marks = toggled != 0 && lines == 0;
+    if (!on_trip_) behind_ns_ = begin_ns - base_ns_ - event.time_ns;
     Status written = only_marks ? Done{} : chip_.write(lines, event.levels);
     last_begin_ns_ = begin_ns;
     last_end_ns_ = clock_.now_ns();
     last_event_ns_ = event.time_ns;
     levels_ = event.levels;
+    count(toggled, event.levels);
     if (!only_marks) ++writes_;
     return written;
+}
+
+void Executor::count(gpio::LineMask toggled, gpio::LineMask levels) {
+    StepPositions& positions = on_trip_ ? trip_steps_ : positions_;
+    for (gpio::LineMask rising = toggled & levels & all_step_bits; rising; rising &= rising - 1) {
+        const auto axis = static_cast<std::size_t>(std::countr_zero(rising)) / 2;
+        positions[axis] += (levels & direction_bit(axis)) != 0 ? 1 : -1;
+    }
 }
 
 }  // namespace lyr::run

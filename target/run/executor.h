@@ -13,11 +13,17 @@
 //  5. After a first request to stop, time is stretched more and more, so that the head comes to rest on
 //     its path within about braking_ns and no axis loses steps; then execute() returns false. A second
 //     request stops after the pulse that is out. A long wait is left within wait_slice_ns.
-//     Before the first event a request ends it without a write.
+//     Before the first event a request ends it without a write. taken() events have been written then.
 //  6. A failed write ends the print with its diagnostic.
 //  7. At a mark the count of those reached is stored; at a gate no further event is written until as many orders are
 //     done. The time spent there counts as neither time of events nor lateness. Without `marks` both are passed by.
 //  8. Nothing is allocated, locked or logged, and no call is made but wait and write.
+//  9. Time runs at the pace that is wanted, a share of the planned one, and follows a new one as evenly as in
+//     braking. A wanted pace of 0 brings the head to rest as 5 does; after go_on() the events from taken() on follow, and
+//     the head gains speed as it lost it. No event is left out or doubled by that.
+// 10. A trip is a train of events of its own, at rest on both ends, written between two events of the path at its own
+//     full pace. A request to stop brings it to rest, too; a wanted pace does not.
+// 11. positions() counts the rising edges of the path, trip_steps() those of trips.
 
 #pragma once
 
@@ -29,6 +35,7 @@
 #include "target/gpio/clock.h"
 #include "target/gpio/gpio_chip.h"
 #include "target/run/heat_order.h"
+#include "target/run/pulse_decoder.h"
 #include "target/run/pulse_schedule.h"
 
 namespace lyr::run {
@@ -45,38 +52,61 @@ ExecutorTiming executor_timing(const config::Printer& printer);
 using StopRequests = std::atomic<int>;
 static_assert(StopRequests::is_always_lock_free);
 
+// 0: rest; 1: as planned.
+using WantedPace = std::atomic<float>;
+static_assert(WantedPace::is_always_lock_free);
+
 class Executor {
 public:
     static constexpr std::int64_t wait_slice_ns = 50'000'000;
 
     Executor(gpio::GpioChip& chip, gpio::Clock& clock, ExecutorTiming timing,
-             const StopRequests& stop_requests, Marks* marks = nullptr)
+             const StopRequests& stop_requests, Marks* marks = nullptr,
+             const WantedPace* wanted_pace = nullptr)
         : chip_(chip),
           clock_(clock),
           timing_(timing),
           stop_requests_(stop_requests),
-          marks_(marks) {}
+          marks_(marks),
+          wanted_pace_(wanted_pace) {}
 
-    // True: all written. False: stopped on request; what is left of the events must not be written.
+    // True: all written. False: at rest on request; what is left of the events is for after go_on(), or for nobody.
     Result<bool> execute(std::span<const LineEvent> events);
+    // Of the last call of execute().
+    std::size_t taken() const { return taken_; }
+    void go_on();
+    // The events begin and end with levels().
+    Result<bool> execute_trip(std::span<const LineEvent> events);
 
     // Of the event written last, on the time base of the events.
-    std::int64_t time_ns() const { return last_event_ns_; }
+    std::int64_t time_ns() const { return on_trip_ ? path_ns_ : last_event_ns_; }
     // How much longer the print has taken than its events say; braking is not counted.
     std::int64_t stretched_ns() const { return stretched_ns_; }
     std::int64_t worst_late_ns() const { return worst_late_ns_; }
     std::uint64_t writes() const { return writes_; }
     // Spent at gates.
     std::int64_t waited_ns() const { return waited_ns_; }
+    // How much later than without any wait, rest and braking the event was written that was written last, or is being
+    // written.
+    std::int64_t behind_ns() const { return behind_ns_; }
+
+    bool started() const { return started_; }
+    bool on_trip() const { return on_trip_; }
+    gpio::LineMask levels() const { return levels_; }
+    const StepPositions& positions() const { return positions_; }
+    const StepPositions& trip_steps() const { return trip_steps_; }
 
 private:
+    Result<bool> run(std::span<const LineEvent> events);
     void start(const LineEvent& event);
+    double target_pace() const;
     // Clock time between the last event and one `gap_ns` after it, longer while braking; none if the
     // head is at rest and shall stay there.
     std::optional<std::int64_t> paced_gap_ns(std::int64_t gap_ns);
     // The time after the wait, or none if it was left on request.
     std::optional<std::int64_t> wait_until_ns(std::int64_t time_ns);
     Status write(const LineEvent& event, std::int64_t begin_ns);
+    void count(gpio::LineMask toggled, gpio::LineMask levels);
     // False: left on request.
     bool pass_mark(const LineEvent& event);
 
@@ -85,17 +115,25 @@ private:
     ExecutorTiming timing_;
     const StopRequests& stop_requests_;
     Marks* marks_;
-    bool started_ = false;
+    const WantedPace* wanted_pace_;
+    bool started_ = false;  // an event of the path has been written, or is about to
+    bool rebased_ = true;   // the next event is the first of its time base
+    bool on_trip_ = false;
+    std::size_t taken_ = 0;
     gpio::LineMask levels_ = 0;
     std::int64_t last_event_ns_ = 0;
     std::int64_t last_begin_ns_ = 0;  // of the last write, on the clock
     std::int64_t last_end_ns_ = 0;
-    double pace_ = 1;  // of time while braking: 1 full speed, 0 rest
+    double pace_ = 1;  // of time: 1 full speed, 0 rest
     std::int64_t stretched_ns_ = 0;
     std::int64_t worst_late_ns_ = 0;
     std::uint64_t writes_ = 0;
     std::uint32_t marks_reached_ = 0;
+    bool at_gate_ = false;  // reached, and not passed yet
     std::int64_t waited_ns_ = 0;
+    std::int64_t path_ns_ = 0;  // time() of the path while on a trip
+    std::int64_t base_ns_ = 0, behind_ns_ = 0;
+    StepPositions positions_{}, trip_steps_{};
 };
 
 }  // namespace lyr::run

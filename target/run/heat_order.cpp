@@ -12,6 +12,7 @@ bool join(HeatOrder& order, const HeatOrder& next) {
     for (std::size_t i = 0; i < order.targets_c.size(); ++i)
         if (next.targets_c[i]) order.targets_c[i] = next.targets_c[i];
     order.waits = next.waits;
+    order.pause = next.pause;
     if (next.fan_duty) order.fan_duty = next.fan_duty;
     return true;
 }
@@ -56,11 +57,21 @@ std::optional<HeatOrder> HeatOrders::take(const format::Operation& operation,
         set(order, temperature->heater, temperature->target_c, temperature->wait);
     } else if (const auto* fan = std::get_if<format::Fan>(&operation)) {
         set(order, *fan);
+    } else if (const auto* pause = std::get_if<format::Pause>(&operation)) {
+        order.pause = pause->reason;
     }
     const bool changes =
         order.fan_duty || order.targets_c[0] || order.targets_c[1] || order.targets_c[2];
     if (!changes && !order.is_gate()) return std::nullopt;
     return order;
+}
+
+std::optional<HeatOrder> OrderQueue::heed(const HeatOrder& order) const {
+    HeatOrder rest;
+    if (heeded_.heat) rest = order;
+    rest.pause = heeded_.pauses ? order.pause : std::nullopt;
+    if (!heeded_.heat && !rest.pause) return std::nullopt;
+    return rest;
 }
 
 void OrderQueue::push(const HeatOrder& order) {
@@ -76,16 +87,16 @@ std::optional<HeatOrder> OrderQueue::pop() {
     return order;
 }
 
-bool HeatAttendant::is_reached(const HeatOrder& order) const {
+bool HeatAttendant::is_done(const HeatOrder& order) const {
     for (std::size_t i = 0; i < order.waits.size(); ++i)
-        if (order.waits[i] && !control_.reached(i)) return false;
-    return true;
+        if (order.waits[i] && !reached(i)) return false;
+    return !order.pause || pause_is_over_;
 }
 
 void HeatAttendant::give_up(const HeatOrder& order) {
     for (std::size_t i = 0; i < order.waits.size(); ++i) {
-        const thermal::HeaterStatus* status = control_.status(i);
-        if (!order.waits[i] || !status || control_.reached(i)) continue;
+        const thermal::HeaterStatus* status = control_ ? control_->status(i) : nullptr;
+        if (!order.waits[i] || !status || reached(i)) continue;
         char text[300];
         std::snprintf(text, sizeof text,
                       "heater %s: %.1f °C after an hour of waiting for %g °C: is it strong enough, "
@@ -93,30 +104,67 @@ void HeatAttendant::give_up(const HeatOrder& order) {
                       "started again",
                       std::string(config::heater_names[i]).c_str(), status->temperature_c,
                       status->target_c);
-        return control_.stop({thermal::GuardKind::too_slow, text});
+        return control_->stop({thermal::GuardKind::too_slow, text});
     }
 }
 
+void HeatAttendant::set(std::size_t heater, double target_c) {
+    wanted_c_[heater] = target_c;
+    if (control_) control_->set_target(heater, standby_[heater] ? 0 : target_c);
+}
+
+void HeatAttendant::carry_out(const HeatOrder& order) {
+    for (std::size_t i = 0; i < order.targets_c.size(); ++i)
+        if (const auto target_c = order.targets_c[i]) set(i, *target_c);
+    if (order.fan_duty) fan_ = *order.fan_duty;
+    if (order.fan_duty && control_) control_->set_fan(fan_);
+    pause_is_over_ = false;
+}
+
+void HeatAttendant::heed(const HeatWish& wish) {
+    standby_ = wish.standby;
+    for (std::size_t i = 0; i < wanted_c_.size(); ++i)
+        set(i, wish.targets_c[i].value_or(wanted_c_[i]));
+    if (wish.fan) fan_ = *wish.fan;
+    if (wish.fan && control_) control_->set_fan(fan_);
+    pause_is_over_ = pause_is_over_ || wish.pause_is_over;
+}
+
+void HeatAttendant::tell() const {
+    HeatNow now;
+    now.reached = true;
+    for (std::size_t i = 0; i < now.heaters.size(); ++i) {
+        const thermal::HeaterStatus* status = control_ ? control_->status(i) : nullptr;
+        if (status) now.heaters[i] = {true, status->temperature_c, status->target_c};
+        now.reached = now.reached && reached(i);
+    }
+    now.fan = fan_;
+    now.waits = waiting_ && waiting_->is_gate() && !waiting_->pause;
+    if (waiting_ && !pause_is_over_) now.pause = waiting_->pause;
+    desk_->publish(now);
+}
+
 void HeatAttendant::tick() {
+    if (desk_) heed(desk_->take());
     const std::uint32_t reached = marks_.reached.load(std::memory_order_acquire);
     std::uint32_t done = marks_.done.load(std::memory_order_relaxed);
-    ++waited_ticks_;
-    while (done != reached) {
+    if (!on_standby()) ++waited_ticks_;
+    while (done != reached && !on_standby()) {
         if (!waiting_) {
             waiting_ = orders_.pop();
             if (!waiting_) break;
             waited_ticks_ = 0;
-            for (std::size_t i = 0; i < waiting_->targets_c.size(); ++i)
-                if (const auto target_c = waiting_->targets_c[i]) control_.set_target(i, *target_c);
-            if (waiting_->fan_duty) control_.set_fan(*waiting_->fan_duty);
+            carry_out(*waiting_);
         }
-        if (!is_reached(*waiting_)) {
-            if (waited_ticks_ * thermal::tick_s > longest_wait_s) give_up(*waiting_);
+        if (!is_done(*waiting_)) {
+            if (!waiting_->pause && waited_ticks_ * thermal::tick_s > longest_wait_s)
+                give_up(*waiting_);
             break;
         }
         waiting_.reset();
         marks_.done.store(++done, std::memory_order_release);
     }
+    if (desk_) tell();
 }
 
 }  // namespace lyr::run

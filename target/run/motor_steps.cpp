@@ -1,5 +1,7 @@
 #include "target/run/motor_steps.h"
 
+#include <bit>
+
 namespace lyr::run {
 namespace {
 
@@ -40,6 +42,14 @@ std::size_t MotorSteps::next(std::span<motion::StepEvent> events) {
 std::int64_t MotorSteps::tail_ns() const {
     const auto* timed = std::get_if<motion::TimedGenerator>(&generator_);
     return timed ? timed->tail_ns() : 0;
+}
+
+void append_steps(const motion::StepEvent& event, std::vector<Step>& steps) {
+    for (unsigned motors = event.motors; motors; motors &= motors - 1) {
+        const int motor = std::countr_zero(motors);
+        steps.push_back(
+            {event.time_ns, static_cast<std::uint8_t>(motor), (event.positive >> motor & 1) != 0});
+    }
 }
 
 }  // namespace lyr::run

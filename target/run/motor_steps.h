@@ -10,6 +10,7 @@
 
 #include "target/motion/timed_generator.h"
 #include "target/moves/machine.h"
+#include "target/run/pulse_schedule.h"
 
 namespace lyr::run {
 
@@ -29,5 +30,8 @@ public:
 private:
     std::variant<motion::StepGenerator, motion::TimedGenerator> generator_;
 };
+
+// One for each motor that moves.
+void append_steps(const motion::StepEvent& event, std::vector<Step>& steps);
 
 }  // namespace lyr::run

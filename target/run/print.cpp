@@ -1,6 +1,6 @@
-// Four threads: this one, the planning one that fills the ring, the real-time one that empties it, and the one that
-// tends the heaters. They share the ring, the marks of orders, the number of requests to stop and a few numbers for the
-// progress.
+// Four threads: this one, which lives the print's life, the planning one that fills the ring, the real-time one that
+// empties it, and the one that tends the heaters. They share the ring, the course, the marks of orders and the number of
+// requests to stop.
 
 #include "target/run/print.h"
 
@@ -11,11 +11,13 @@
 #include <optional>
 #include <thread>
 
+#include "base/text.h"
 #include "target/gpio/gpiod_chip.h"
 #include "target/run/demands.h"
 #include "target/run/event_ring.h"
 #include "target/run/event_stream.h"
 #include "target/run/executor.h"
+#include "target/run/life.h"
 #include "target/run/real_time.h"
 #include "target/run/stop_signals.h"
 
@@ -27,18 +29,25 @@ constexpr std::size_t ring_events = std::size_t{1} << 17;
 // How long a thread that waits for the ring sleeps; far below what the ring holds.
 constexpr std::chrono::microseconds planner_nap{2'000};
 constexpr std::chrono::microseconds executor_nap{50};
-constexpr int signal_wait_ms = 100;
+// How soon a command is served.
+constexpr int signal_wait_ms = 20;
+constexpr double progress_s = 0.1;
 constexpr double ns_per_s = 1e9;
 constexpr double ns_per_us = 1e3;
 
 // What the threads share.
 struct Shared {
+    Shared(PrintControl& print_control, OrderQueue::Heeded heeded)
+        : control(print_control), orders(heeded) {}
+
+    PrintControl& control;
+    StopRequests& stop_requests = control.stop_requests();
     EventRing ring{ring_events};
-    StopRequests stop_requests{0};
+    Course course;
+    LayerLog layers;
+    HeatDesk desk;
     std::atomic<bool> filled{false};    // the ring is full, or all of the print is in it
     std::atomic<bool> finished{false};  // the real-time thread has ended
-    std::atomic<std::uint32_t> layer{0};
-    std::atomic<std::int64_t> time_ns{0};
     OrderQueue orders;
     Marks marks;
 
@@ -71,7 +80,7 @@ Status fill(EventStream& stream, Shared& shared) {
             ++shared.stop_requests;
         }
         more = next.ok() && *next;
-        shared.layer.store(stream.steps().layer());
+        shared.layers.begin(stream.steps().begun(), stream.schedule().shift_ns());
         std::span<const LineEvent> left(events);
         while (!left.empty() && !shared.finished.load()) {
             left = left.subspan(shared.ring.push(left));
@@ -86,7 +95,7 @@ Status fill(EventStream& stream, Shared& shared) {
 }
 
 // The real-time thread. Events are taken a few at a time, so that the ring has room again early.
-Result<bool> drain(Executor& executor, Shared& shared) {
+Result<bool> drain(Executor& executor, gpio::Clock& clock, Shared& shared) {
     constexpr std::size_t batch = 64;
     while (!shared.ring.ended()) {
         std::span<const LineEvent> events = shared.ring.view();
@@ -96,34 +105,66 @@ Result<bool> drain(Executor& executor, Shared& shared) {
             continue;
         }
         events = events.first(std::min(batch, events.size()));
-        Result<bool> executed = executor.execute(events);
+        Result<bool> executed =
+            follow(events, executor, shared.course, clock, shared.stop_requests);
         if (!executed || !*executed) return executed;
-        shared.time_ns.store(executor.time_ns(), std::memory_order_relaxed);
         shared.ring.drop(events.size());
     }
     return true;
 }
 
+// Nobody tends heaters: pauses that the file asks for are still seen to.
+class IdleTending {
+public:
+    explicit IdleTending(Shared& shared)
+        : attendant_(shared.orders, shared.marks, nullptr, &shared.desk) {}
+    void tick(double now_s) {
+        if (now_s < next_s_) return;
+        next_s_ = now_s + thermal::tick_s;
+        attendant_.tick();
+    }
+
+private:
+    HeatAttendant attendant_;
+    double next_s_ = 0;
+};
+
 // Until the real-time thread has ended.
 void watch(const StopSignals& signals, Shared& shared, const PrintJob& job,
-           const Inspection& inspection, Heating* heating) {
+           const Inspection& inspection, Life& life, Heating* heating) {
+    IdleTending idle(shared);
+    double next_progress_s = heat_time_s() + progress_s;
     while (!shared.finished.load()) {
         if (signals.wait_ms(signal_wait_ms)) ++shared.stop_requests;
+        const double now_s = heat_time_s();
         if (heating)
-            if (const auto silent = heating->stage->expire(heat_time_s())) shared.tripped(*silent);
-        if (job.progress)
-            job.progress({shared.layer.load(), inspection.totals.layers,
-                          static_cast<double>(shared.time_ns.load()) / ns_per_s,
-                          inspection.header.summary.estimated_time_s});
+            if (const auto silent = heating->stage->expire(now_s)) shared.tripped(*silent);
+        if (!heating) idle.tick(now_s);
+        life.tick(now_s);
+        if (!job.progress || now_s < next_progress_s) continue;
+        next_progress_s = now_s + progress_s;
+        job.progress({life.layer(), inspection.totals.layers,
+                      static_cast<double>(shared.course.time_ns.load()) / ns_per_s,
+                      inspection.header.summary.estimated_time_s});
     }
 }
 
-Diagnostic stopped(const Shared& shared) {
-    char text[160];
-    std::snprintf(text, sizeof text,
-                  "stopped on request in layer %u after %.1f s; all lines are released",
-                  shared.layer.load(), static_cast<double>(shared.time_ns.load()) / ns_per_s);
-    return {Severity::error, ExitStatus::stopped, text, {}};
+Diagnostic stopped(const Shared& shared, const Life& life) {
+    std::string why = life.ended_by().value_or("stopped on request");
+    if (!life.ended_by() && shared.stop_requests > 1)
+        why += " at once, so that the position of the head is lost";
+    return {Severity::error,
+            ExitStatus::stopped,
+            why + formatted("; in layer %u after %.1f s; all lines are released", life.layer(),
+                            static_cast<double>(shared.course.time_ns.load()) / ns_per_s),
+            {}};
+}
+
+// A line that cannot be written, or an edge that came too late.
+Diagnostic derailed(Diagnostic error) {
+    if (error.message.find("position is lost") == std::string::npos)
+        error.message += "; the printer has stopped, and its position is lost";
+    return error;
 }
 
 // What is known and decided before a line is touched.
@@ -132,12 +173,16 @@ struct Prepared {
     Diagnostics notes;
 };
 
+bool can_resume(const PrintJob& job) {
+    return job.control || job.printer.inputs[config::input_pause];
+}
+
 Result<Prepared> prepare(const PrintJob& job) {
     Result<Inspection> inspection = inspect(job.file, job.printer);
     if (!inspection) return inspection.error();
     Prepared prepared{std::move(*inspection), {}};
-    const Status possible =
-        check_demands(prepared.inspection, job.printer, job.no_heat, prepared.notes);
+    const Status possible = check_demands(prepared.inspection, job.printer, job.no_heat,
+                                          prepared.notes, can_resume(job));
     if (!possible) return possible.error();
     return prepared;
 }
@@ -147,7 +192,7 @@ class Tending {
 public:
     Tending(Heating* heating, Shared& shared) {
         if (!heating) return;
-        attendant_.emplace(shared.orders, shared.marks, *heating->control);
+        attendant_.emplace(shared.orders, shared.marks, heating->control.get(), &shared.desk);
         thread_ = std::thread([this, heating, &shared] {
             tend(*heating->control, *attendant_, shared.finished,
                  [&](const thermal::Trip& trip) { shared.tripped(trip); });
@@ -163,12 +208,35 @@ private:
     std::thread thread_;
 };
 
+struct Outcome {
+    Status planned = Done{};
+    Result<bool> executed = true;
+};
+
+Status status_of(Shared& shared, const Life& life, const Outcome& outcome) {
+    if (const auto trip = shared.trip()) return diagnostic_of(*trip);
+    if (!outcome.executed) return derailed(outcome.executed.error());
+    if (!outcome.planned) return outcome.planned.error();
+    if (!*outcome.executed) return stopped(shared, life);
+    return Done{};
+}
+
+void report_on(const Executor& executor, const gpio::TracingClock& clock, PrintReport& report) {
+    report.planned_s = static_cast<double>(executor.time_ns()) / ns_per_s;
+    report.stretched_s = static_cast<double>(executor.stretched_ns()) / ns_per_s;
+    report.worst_late_ns = executor.worst_late_ns();
+    report.writes = executor.writes();
+    report.waited_s = static_cast<double>(executor.waited_ns()) / ns_per_s;
+    report.lateness = clock.histogram();
+}
+
 Result<PrintReport> run(const PrintJob& job, const Prepared& prepared, gpio::GpioChip& chip,
                         gpio::Clock& clock, Heating* heating) {
-    Shared shared;
+    PrintControl own_control;
+    Shared shared(job.control ? *job.control : own_control, {heating != nullptr, can_resume(job)});
+    const Inspection& inspection = prepared.inspection;
     Result<EventStream> stream =
-        EventStream::open(job.file, job.printer, prepared.inspection.filament_diameter_mm,
-                          heating ? &shared.orders : nullptr);
+        EventStream::open(job.file, job.printer, inspection.filament_diameter_mm, &shared.orders);
     if (!stream) return stream.error();
     const StopSignals signals;
     PrintReport report;
@@ -176,34 +244,31 @@ Result<PrintReport> run(const PrintJob& job, const Prepared& prepared, gpio::Gpi
     lock_memory(report.warnings);
     gpio::TracingClock traced(clock);
     Executor executor(chip, traced, executor_timing(job.printer), shared.stop_requests,
-                      heating ? &shared.marks : nullptr);
-    Status planned = Done{};
-    Result<bool> executed = true;
+                      &shared.marks, &shared.course.wanted_pace);
+    Life life(job.printer, shared.control, shared.course, shared.layers, shared.desk,
+              {job.file, inspection.totals.layers, inspection.header.summary.estimated_time_s});
+    if (heating) life.cut = [heating] { (void)heating->stage->all_off(); };
+    Outcome outcome;
     Tending tending(heating, shared);
-    std::thread planner([&] { planned = fill(*stream, shared); });
+    std::thread planner([&] { outcome.planned = fill(*stream, shared); });
     std::thread edges([&] {
         take_precedence(report.warnings);
         while (!shared.filled.load() && !shared.stop_requests.load())
             std::this_thread::sleep_for(executor_nap);
-        executed = drain(executor, shared);
+        outcome.executed = drain(executor, traced, shared);
         const Status released = chip.release();
-        if (!released && executed) executed = released.error();
+        if (!released && outcome.executed) outcome.executed = released.error();
         shared.finished.store(true);
     });
-    watch(signals, shared, job, prepared.inspection, heating);
+    watch(signals, shared, job, inspection, life, heating);
     edges.join();
     planner.join();
     tending.join();
-    if (const auto trip = shared.trip()) return diagnostic_of(*trip);
-    if (!executed) return executed.error();
-    if (!planned) return planned.error();
-    if (!*executed) return stopped(shared);
-    report.planned_s = static_cast<double>(executor.time_ns()) / ns_per_s;
-    report.stretched_s = static_cast<double>(executor.stretched_ns()) / ns_per_s;
-    report.worst_late_ns = executor.worst_late_ns();
-    report.writes = executor.writes();
-    report.waited_s = static_cast<double>(executor.waited_ns()) / ns_per_s;
-    report.lateness = traced.histogram();
+    const Status status = status_of(shared, life, outcome);
+    life.end(status, outcome.executed.ok() && shared.stop_requests < 2);
+    if (!status) return status.error();
+    report_on(executor, traced, report);
+    report.paused_s = life.paused_s();
     return report;
 }
 
@@ -248,6 +313,10 @@ std::string text_of(const PrintReport& report) {
     std::string text = line;
     if (report.waited_s > 0) {
         std::snprintf(line, sizeof line, "  waited %.1f s for temperatures\n", report.waited_s);
+        text += line;
+    }
+    if (report.paused_s > 0) {
+        std::snprintf(line, sizeof line, "  paused for %.1f s\n", report.paused_s);
         text += line;
     }
     for (std::size_t i = 0; i < report.lateness.size(); ++i) {

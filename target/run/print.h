@@ -12,6 +12,8 @@
 //  4. The first SIGINT, SIGTERM or SIGHUP brings the head to rest on its path, a second one stops at
 //     once; both end with status stopped.
 //  5. The pulses are those of the simulation, in the same order, with at least the same gaps.
+//  6. Commands of `control` are served as life.h says, by this thread; it tells there what the print is, to its end.
+//  7. Where the head is afterwards is known unless the message says that its position is lost.
 
 #pragma once
 
@@ -29,6 +31,7 @@ struct PrintJob {
     config::Printer printer;
     bool no_heat = false;
     ProgressSink progress;
+    PrintControl* control = nullptr;  // none: only signals and buttons do something
 };
 
 struct PrintReport {
@@ -37,6 +40,7 @@ struct PrintReport {
     std::int64_t worst_late_ns = 0;
     std::uint64_t writes = 0;
     double waited_s = 0;  // for temperatures
+    double paused_s = 0;
     // How late waits ended; the buckets are those of TracingClock.
     std::array<std::uint64_t, gpio::TracingClock::buckets> lateness{};
     Diagnostics warnings;

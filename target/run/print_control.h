@@ -22,6 +22,7 @@
 #include "target/config/printer.h"
 #include "target/run/command.h"
 #include "target/run/executor.h"
+#include "target/run/heat_desk.h"
 
 namespace lyr::run {
 
@@ -38,11 +39,6 @@ enum class PrintState : std::uint8_t {
 inline constexpr std::array<std::string_view, 8> print_state_names{
     "heating", "printing", "pausing", "paused", "resuming", "stopping", "done", "failed"};
 
-struct HeaterNow {
-    bool is_present = false;
-    double temperature_c = 0, target_c = 0;  // as measured; 0: off
-};
-
 struct PrintStatus {
     PrintState state = PrintState::heating;
     std::string message;  // why it is in this state, where that is not plain; one line
@@ -54,7 +50,7 @@ struct PrintStatus {
     double time_s = 0;       // of the plan, waits and pauses not counted
     double elapsed_s = 0;    // since the begin
     double estimated_s = 0;  // of the whole plan, as the file states it; 0: it does not
-    std::array<HeaterNow, config::heater_count> heaters{};
+    HeatersNow heaters{};
     double fan = 0;  // 0..1
     double speed_factor = 1;
     double filament_mm = 0;  // pushed on the path so far, less what is drawn back

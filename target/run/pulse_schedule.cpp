@@ -15,8 +15,9 @@ constexpr std::int64_t long_ago_ns = -3'600'000'000'000;
 }  // namespace
 
 PulseSchedule::PulseSchedule(const config::PulseTiming& timing, gpio::LineMask idle)
-    : timing_(timing), levels_(idle) {
-    axes_.fill({long_ago_ns, long_ago_ns, false});
+    : timing_(timing), idle_(idle), levels_(idle) {
+    for (std::size_t i = 0; i < axes_.size(); ++i)
+        axes_[i] = {long_ago_ns, long_ago_ns, (idle & direction_bit(i)) != 0};
     open_.reserve(6 * config::axis_count);
 }
 
@@ -103,6 +104,15 @@ void PulseSchedule::finish(std::int64_t end_ns, std::vector<LineEvent>& events) 
     open_.clear();
     levels_ &= all_mark_bits;
     events.push_back({last_ns, levels_});
+}
+
+void PulseSchedule::finish_as_begun(std::vector<LineEvent>& events) {
+    const std::int64_t last_ns = quiet_ns(0);
+    emit_before(last_ns, events);
+    open_.clear();
+    levels_ = idle_;
+    events.push_back({last_ns, levels_});
+    events.push_back({last_ns + timing_.direction_setup_ns, levels_});
 }
 
 std::vector<Shift> PulseSchedule::take_shifts() {

@@ -49,7 +49,7 @@ struct Shift {
 
 class PulseSchedule {
 public:
-    // `idle` are the levels of all other lines, such as enable.
+    // `idle` are the levels of all other lines, such as enable, and of the direction lines before the first step.
     PulseSchedule(const config::PulseTiming& timing, gpio::LineMask idle);
 
     // An event at time 0 that sets the idle lines; steps come `delay_ns` later than they say.
@@ -59,6 +59,8 @@ public:
     // What is still open, and at `end_ns` (in time of the steps), or as soon after the last edges as
     // drivers allow, an event that makes all lines inactive.
     void finish(std::int64_t end_ns, std::vector<LineEvent>& events);
+    // Instead: all lines are again as they were at the begin, and direction lines steady for long enough.
+    void finish_as_begun(std::vector<LineEvent>& events);
 
     std::int64_t shift_ns() const { return shift_ns_; }
     // Growths of the shift since the last call.
@@ -83,7 +85,7 @@ private:
     void emit_before(std::int64_t time_ns, std::vector<LineEvent>& events);
 
     config::PulseTiming timing_;
-    gpio::LineMask levels_;
+    gpio::LineMask idle_, levels_;
     std::int64_t shift_ns_ = 0;
     std::int64_t last_mark_ns_ = -1;
     std::array<AxisState, config::axis_count> axes_;

@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "base/text.h"
 #include "target/gpio/tracing_chip.h"
 #include "target/run/demands.h"
 #include "target/run/event_stream.h"
 #include "target/run/executor.h"
 #include "target/run/heating.h"
+#include "target/run/life.h"
 #include "target/run/simulated_clock.h"
 #include "target/run/step_checks.h"
 
@@ -26,6 +28,13 @@ Diagnostic stopped() {
     return {Severity::error, ExitStatus::stopped, "the simulation was stopped on request", {}};
 }
 
+Diagnostic ended(double time_s, std::uint32_t layer, const std::string& why) {
+    return {Severity::error,
+            ExitStatus::stopped,
+            formatted("after %.1f s, in layer %u: ", time_s, layer) + why,
+            {}};
+}
+
 Diagnostic tripped(const thermal::SimulatedHeat& heat, std::uint32_t layer) {
     char text[64];
     std::snprintf(text, sizeof text, "after %.1f s, in layer %u: ", *heat.tripped_s(), layer);
@@ -39,20 +48,27 @@ class Simulation {
 public:
     // `orders` is none, or where the stream puts what is to be heated.
     Simulation(const SimulationJob& job, const Inspection& inspection, EventStream stream,
-               FilePath file, OrderQueue* orders)
+               FilePath file, OrderQueue* orders, bool heats)
         : job_(job),
           inspection_(inspection),
-          heats_(orders != nullptr),
+          heats_(heats),
+          control_(job.control ? *job.control : own_control_),
+          marked_(orders != nullptr),
           heat_(job.printer, heats_ ? job.faults : std::vector<thermal::Fault>()),
-          attendant_(orders ? *orders : no_orders_, marks_, heat_.control()),
-          clock_(heat_, attendant_, stop_),
+          attendant_(orders ? *orders : no_orders_, marks_, heats ? &heat_.control() : nullptr,
+                     is_lived() ? &desk_ : nullptr),
+          clock_(heat_, attendant_, control_.stop_requests()),
+          life_(job.printer, control_, course_, layers_, desk_,
+                {job.file, inspection.totals.layers, inspection.header.summary.estimated_time_s}),
           stream_(std::move(stream)),
           file_(std::move(file)),
           checks_(job.printer, [this](PathCurve& curve) { return file_.next(curve); }),
           decoder_([this](const DecodedStep& step) { checks_.step(step); }),
           layout_(line_layout(job.printer)),
           mock_(layout_.names.size(), clock_,
-                [this](const gpio::LineWrite& write) { decode(write); }) {}
+                [this](const gpio::LineWrite& write) { decode(write); }) {
+        if (is_lived()) clock_.on_tick = [this](double time_s) { live(time_s); };
+    }
 
     // `trace` is none, or the file to write the wave to.
     Status run(ReplaceFile* trace);
@@ -60,22 +76,35 @@ public:
 
 private:
     Status pump(Executor& executor, ReplaceFile* trace);
-    // Waits for temperatures are no part of the plan's time.
+    // Waits, rests and what the head does meanwhile are no part of the plan.
     void decode(gpio::LineWrite write) {
-        write.time_ns -= executor_ ? executor_->waited_ns() : 0;
+        if (executor_ && executor_->on_trip()) return;
+        write.time_ns -= executor_ ? executor_->behind_ns() : 0;
         decoder_.write(write);
     }
+    // Whether anybody asks anything of it.
+    bool is_lived() const { return !job_.script.empty() || job_.control; }
+    void live(double time_s);
+    Diagnostic why_ended() const;
     bool asked_to_stop(const Executor& executor) const;
 
     const SimulationJob& job_;
     const Inspection& inspection_;
     bool heats_;
+    PrintControl own_control_;
+    PrintControl& control_;
+    bool marked_;
     OrderQueue no_orders_;
     Marks marks_;
-    StopRequests stop_{0};
+    HeatDesk desk_;
     thermal::SimulatedHeat heat_;
     HeatAttendant attendant_;
     SimulatedClock clock_;
+    Course course_;
+    LayerLog layers_;
+    Life life_;
+    std::size_t posted_ = 0;  // of the script
+    StepPositions trip_steps_{};
     const Executor* executor_ = nullptr;
     EventStream stream_;
     FilePath file_;
@@ -90,10 +119,12 @@ Status Simulation::run(ReplaceFile* trace) {
     std::optional<gpio::TracingChip> tracing;
     if (trace) tracing.emplace(mock_, clock_, layout_.names, *trace);
     gpio::GpioChip& chip = tracing ? static_cast<gpio::GpioChip&>(*tracing) : mock_;
-    Executor executor(chip, clock_, executor_timing(job_.printer), stop_,
-                      heats_ ? &marks_ : nullptr);
+    Executor executor(chip, clock_, executor_timing(job_.printer), control_.stop_requests(),
+                      marked_ ? &marks_ : nullptr, &course_.wanted_pace);
     executor_ = &executor;
     Status pumped = pump(executor, trace);
+    life_.end(pumped, control_.stop_requests() < 2);
+    trip_steps_ = executor.trip_steps();
     print_time_s_ = static_cast<double>(executor.time_ns()) / ns_per_s;
     waited_s_ = static_cast<double>(executor.waited_ns()) / ns_per_s;
     if (!pumped) return pumped;
@@ -111,14 +142,29 @@ Status Simulation::pump(Executor& executor, ReplaceFile* trace) {
         const Result<bool> more = stream_.next(events);
         if (!more) return more.error();
         checks_.expect(stream_.steps().moves(), stream_.schedule().take_shifts());
-        const Result<bool> executed = executor.execute(events);
+        layers_.begin(stream_.steps().begun(), stream_.schedule().shift_ns());
+        const Result<bool> executed =
+            follow(events, executor, course_, clock_, control_.stop_requests());
         if (!executed) return executed.error();
-        if (!*executed) return tripped(heat_, stream_.steps().layer());
+        if (!*executed) return why_ended();
         if (!*more) return Done{};
         if (batch % batches_between_questions != 0) continue;
         if (trace && trace->failed()) return trace->flush();
         if (asked_to_stop(executor)) return stopped();
     }
+}
+
+void Simulation::live(double time_s) {
+    for (; posted_ < job_.script.size() && job_.script[posted_].time_s <= time_s; ++posted_)
+        (void)control_.post(job_.script[posted_].command);
+    life_.tick(time_s);
+    if (life_.rests() && posted_ == job_.script.size() && !job_.control) ++control_.stop_requests();
+}
+
+Diagnostic Simulation::why_ended() const {
+    if (heat_.control().trip()) return tripped(heat_, stream_.steps().layer());
+    return ended(static_cast<double>(clock_.now_ns()) / ns_per_s, life_.layer(),
+                 life_.ended_by().value_or("the script ends, and the print rests"));
 }
 
 bool Simulation::asked_to_stop(const Executor& executor) const {
@@ -142,6 +188,8 @@ SimulationReport Simulation::report() const {
     report.path = checks_.off_file();
     report.planned_steps = checks_.off_plan();
     report.waited_s = waited_s_;
+    report.paused_s = life_.paused_s();
+    report.trip_steps = trip_steps_;
     for (std::size_t i = 0; i < config::heater_count; ++i) {
         const thermal::HeaterStatus* status = heat_.control().status(i);
         if (heats_ && status && status->on_s > 0)
@@ -161,7 +209,9 @@ Heed heed(const Inspection& inspection, const SimulationJob& job) {
     const bool asked = !inspection.demands.hottest.empty();
     const auto possible = [&](bool no_heat) {
         result.notes.clear();
-        const Status checked = check_demands(inspection, job.printer, no_heat, result.notes);
+        const bool can_resume = !job.script.empty() || job.control;
+        const Status checked =
+            check_demands(inspection, job.printer, no_heat, result.notes, can_resume);
         if (checked) return true;
         result.notes.push_back(checked.error());
         result.notes.back().severity = Severity::warning;
@@ -189,14 +239,16 @@ Result<SimulationReport> simulate(const SimulationJob& job) {
     if (!inspection) return inspection.error();
     const double diameter_mm = inspection->filament_diameter_mm;
     Heed heeded = heed(*inspection, job);
-    OrderQueue orders;
-    OrderQueue* wanted = heeded.heats ? &orders : nullptr;
+    const bool is_lived = !job.script.empty() || job.control;
+    OrderQueue orders({heeded.heats, is_lived});
+    OrderQueue* wanted = heeded.heats || is_lived ? &orders : nullptr;
     Result<EventStream> stream = EventStream::open(job.file, job.printer, diameter_mm, wanted);
     if (!stream) return stream.error();
     Result<format::Reader> reader = open_file(job.file);
     if (!reader) return reader.error();
     Simulation simulation(job, *inspection, std::move(*stream),
-                          FilePath(std::move(*reader), job.printer.start_mm, diameter_mm), wanted);
+                          FilePath(std::move(*reader), job.printer.start_mm, diameter_mm), wanted,
+                          heeded.heats);
     if (const Status run = simulation.run(trace ? &*trace : nullptr); !run) return run.error();
     if (trace)
         if (const Status written = trace->commit(); !written) return written.error();

@@ -14,7 +14,9 @@
 //  4. Heaters are models behind mock lines (thermal/simulated_heat.h), unless `no_heat`, or the file asks for none,
 //     or the printer cannot do what it asks, which a note then tells. `faults` break them at their times; a guard
 //     that fires ends the simulation with its message (status machine) and the time.
-//  5. With a trace path, the lines are written there as a wave file, which appears whole or not at all.
+//  5. `script` gives commands at their times, and the pauses that the file asks for are made. A script that has ended while
+//     the print rests ends it. What the head does on trips is no part of 2.
+//  6. With a trace path, the lines are written there as a wave file, which appears whole or not at all.
 
 #pragma once
 
@@ -25,6 +27,7 @@
 #include "target/config/printer.h"
 #include "target/run/inspect.h"
 #include "target/run/path_check.h"
+#include "target/run/print_control.h"
 #include "target/run/pulse_decoder.h"
 #include "target/thermal/faults.h"
 
@@ -48,6 +51,8 @@ struct SimulationJob {
     StopQuestion stop;
     bool no_heat = false;
     std::vector<thermal::Fault> faults{};
+    std::vector<TimedCommand> script{};  // in order of time
+    PrintControl* control = nullptr;     // to look on from outside
 };
 
 // What a heater did.
@@ -69,6 +74,8 @@ struct SimulationReport {
     Deviation path;                 // 2a
     AxisValues planned_steps{};     // 2b
     double waited_s = 0;            // for temperatures, beside the print time
+    double paused_s = 0;            // by command or by the file
+    StepPositions trip_steps{};     // that trips left behind
     std::vector<HeatFigures> heat;  // of the heaters that had a target
     Diagnostics notes;              // what the file asks and a simulation passes over
 

@@ -3,8 +3,11 @@
 // Contract
 //  1. As VirtualClock; and every thermal tick up to the time that a wait ends at is done, in order, with its time.
 //  2. A guard that fires is a request to stop.
+//  3. After each tick `on_tick` is called with its time.
 
 #pragma once
+
+#include <functional>
 
 #include "target/gpio/clock.h"
 #include "target/run/executor.h"
@@ -17,6 +20,8 @@ class SimulatedClock final : public gpio::Clock {
 public:
     SimulatedClock(thermal::SimulatedHeat& heat, HeatAttendant& attendant, StopRequests& stop)
         : heat_(heat), attendant_(attendant), stop_(stop) {}
+
+    std::function<void(double time_s)> on_tick;
 
     std::int64_t now_ns() const override { return clock_.now_ns(); }
     std::int64_t wait_until_ns(std::int64_t time_ns) override;

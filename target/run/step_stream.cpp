@@ -2,8 +2,6 @@
 
 #include "target/run/step_stream.h"
 
-#include <bit>
-
 #include "target/run/inspect.h"
 
 namespace lyr::run {
@@ -13,14 +11,6 @@ constexpr std::size_t batch_events = 2048;
 constexpr double ns_per_s = 1e9;
 // Orders that stand between the moves of a full planner are fewer, but for a file that means harm.
 constexpr std::size_t most_waiting = 4 * motion::Planner::default_capacity;
-
-void append_steps(const motion::StepEvent& event, std::vector<Step>& steps) {
-    for (unsigned motors = event.motors; motors; motors &= motors - 1) {
-        const int motor = std::countr_zero(motors);
-        steps.push_back(
-            {event.time_ns, static_cast<std::uint8_t>(motor), (event.positive >> motor & 1) != 0});
-    }
-}
 
 }  // namespace
 
@@ -45,6 +35,7 @@ StepStream::StepStream(std::string path, Interpreter interpreter, motion::Planne
 
 Result<bool> StepStream::next(std::vector<Step>& steps) {
     moves_.clear();
+    begun_.clear();
     std::size_t room = batch_events;
     while (room > 0) {
         room -= take(room, steps);
@@ -57,6 +48,7 @@ Result<bool> StepStream::next(std::vector<Step>& steps) {
             }
             if (const Status planned = plan(); !planned) return planned.error();
         }
+        if (move.tag != layer_) begun_.push_back({move.start_ns, move.tag});
         layer_ = move.tag;
         if (!waiting_.empty() && waiting_.front().before_move <= popped_) {
             // What lags behind the plan comes first.
@@ -121,8 +113,10 @@ Status StepStream::plan(const motion::Move& move) {
     return Done{};
 }
 
-Status StepStream::plan(const HeatOrder& order) {
-    if (!orders_) return Done{};
+Status StepStream::plan(const HeatOrder& asked) {
+    const std::optional<HeatOrder> heeded = orders_ ? orders_->heed(asked) : std::nullopt;
+    if (!heeded) return Done{};
+    const HeatOrder& order = *heeded;
     // All motors rest when the head does, and what lags behind it has come.
     if (order.is_gate()) planner_.dwell(static_cast<double>(generator_.tail_ns()) / ns_per_s);
     const bool same_place = !waiting_.empty() && waiting_.back().before_move == pushed_;

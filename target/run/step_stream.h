@@ -22,6 +22,12 @@
 
 namespace lyr::run {
 
+// From this time on, of the steps or of the events, the head is in this layer, from 1.
+struct LayerBegin {
+    std::int64_t time_ns = 0;
+    std::uint32_t layer = 0;
+};
+
 class StepStream {
 public:
     static Result<StepStream> open(const std::string& path, const config::Printer& printer,
@@ -35,6 +41,8 @@ public:
     std::int64_t time_ns() const { return planner_.time_ns() + generator_.tail_ns(); }
     // Of the move begun last, from 1; 0 before the first.
     std::uint32_t layer() const { return layer_; }
+    // Layers that the batch has begun.
+    const std::vector<LayerBegin>& begun() const { return begun_; }
 
 private:
     // An order and the number of the move that it stands before.
@@ -48,7 +56,7 @@ private:
 
     Status plan();
     Status plan(const motion::Move& move);
-    Status plan(const HeatOrder& order);
+    Status plan(const HeatOrder& asked);
     // Appends the next steps of what is known, at most so many; how many events they were.
     std::size_t take(std::size_t most, std::vector<Step>& steps);
     bool finish(std::vector<Step>& steps);
@@ -67,6 +75,7 @@ private:
     std::vector<motion::PlannedMove> moves_;
     std::vector<motion::StepEvent> events_;
     std::uint32_t layer_ = 0;
+    std::vector<LayerBegin> begun_;
     std::int64_t last_ns_ = 0;  // of the steps so far
 };
 

@@ -110,7 +110,7 @@ TEST_CASE("print 4: SIGTERM brings the head to rest on its path, with all lines 
     }
 }
 
-TEST_CASE("print 3: a line that cannot be written ends the print, and the rest is released") {
+TEST_CASE("print 3, 7: a line that cannot be written ends the print, and the rest is released") {
     const config::Printer printer = patient_printer();
     const std::string file = write_print("broken_line", {draw_square});
     gpio::MonotonicClock clock;
@@ -123,7 +123,7 @@ TEST_CASE("print 3: a line that cannot be written ends the print, and the rest i
         });
     const Result<PrintReport> report = print({file, printer, false, {}}, chip, clock);
     REQUIRE_FALSE(report.ok());
-    CHECK(report.error().message == "bus error");
+    CHECK(report.error().message == "bus error; the printer has stopped, and its position is lost");
     CHECK(chip.released());
     CHECK(chip.levels() == 0);
 }

@@ -1,0 +1,145 @@
+// One request a line, since each line's pull is its own and the kernel keeps each line's edges in a queue of its own
+// anyway. The queues are merged by time.
+
+#include "target/gpio/gpiod_inputs.h"
+
+#include <poll.h>
+#include <time.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <vector>
+
+#include "target/gpio/gpiod_lines.h"
+
+namespace lyr::gpio {
+namespace {
+
+constexpr std::int64_t ns_per_s = 1'000'000'000;
+
+struct Input {
+    ChipHandle chip;
+    gpiod_line* line = nullptr;
+    std::string text;  // for messages
+    bool active_low = false;
+};
+
+Diagnostic lost(const Input& input) {
+    return machine_error("reading " + input.text + " failed: " + std::strerror(errno));
+}
+
+class GpiodInputs final : public InputLines {
+public:
+    explicit GpiodInputs(std::vector<Input> inputs) : inputs_(std::move(inputs)) {
+        for (std::size_t i = 0; i < inputs_.size(); ++i)
+            polled_[i] = {::gpiod_line_event_get_fd(inputs_[i].line), POLLIN | POLLPRI, 0};
+    }
+
+    std::size_t line_count() const override { return inputs_.size(); }
+
+    Result<LineMask> read() override {
+        LineMask levels = 0;
+        for (std::size_t i = 0; i < inputs_.size(); ++i) {
+            const int value = ::gpiod_line_get_value(inputs_[i].line);
+            if (value < 0) return lost(inputs_[i]);
+            if ((value != 0) != inputs_[i].active_low) levels |= line_bit(i);
+        }
+        return levels;
+    }
+
+    Result<std::size_t> collect(std::span<InputEdge> edges) override {
+        Result<bool> ready = wait_ns(0);
+        if (!ready) return std::move(ready).error();
+        std::size_t count = 0;
+        for (std::size_t i = 0; *ready && i < inputs_.size() && count < edges.size(); ++i) {
+            if (polled_[i].revents == 0) continue;
+            Result<std::size_t> taken = take(i, edges.subspan(count));
+            if (!taken) return taken;
+            count += *taken;
+        }
+        std::sort(edges.begin(), edges.begin() + static_cast<std::ptrdiff_t>(count),
+                  [](const InputEdge& a, const InputEdge& b) { return a.time_ns < b.time_ns; });
+        return count;
+    }
+
+    Result<bool> wait_ns(std::int64_t time_ns) override {
+        const timespec limit{static_cast<time_t>(time_ns / ns_per_s),
+                             static_cast<long>(time_ns % ns_per_s)};
+        const int ready = ::ppoll(polled_.data(), inputs_.size(), &limit, nullptr);
+        if (ready < 0 && errno != EINTR)
+            return machine_error(std::string("waiting for inputs failed: ") + std::strerror(errno));
+        return ready > 0;
+    }
+
+private:
+    // The kernel keeps 16 edges a line, and drops what comes then.
+    static constexpr std::size_t kernel_edges = 16;
+
+    Result<std::size_t> take(std::size_t index, std::span<InputEdge> edges) {
+        const Input& input = inputs_[index];
+        std::array<gpiod_line_event, kernel_edges> events{};
+        const auto room = static_cast<unsigned>(std::min(edges.size(), events.size()));
+        const int count =
+            ::gpiod_line_event_read_fd_multiple(polled_[index].fd, events.data(), room);
+        if (count < 0) return lost(input);
+        if (count == static_cast<int>(kernel_edges))
+            return machine_error(input.text +
+                                 ": edges come faster than they can be taken; is the "
+                                 "line connected, and has it a pull resistor?");
+        for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
+            edges[i] = {std::int64_t{events[i].ts.tv_sec} * ns_per_s + events[i].ts.tv_nsec,
+                        static_cast<std::uint8_t>(index),
+                        (events[i].event_type == GPIOD_LINE_EVENT_RISING_EDGE) != input.active_low};
+        return static_cast<std::size_t>(count);
+    }
+
+    std::vector<Input> inputs_;
+    std::array<pollfd, max_lines> polled_{};
+};
+
+int flags_of(Pull pull) {
+    switch (pull) {
+        case Pull::as_is:
+            return 0;
+        case Pull::up:
+            return GPIOD_LINE_REQUEST_FLAG_BIAS_PULL_UP;
+        case Pull::down:
+            return GPIOD_LINE_REQUEST_FLAG_BIAS_PULL_DOWN;
+        case Pull::none:
+            return GPIOD_LINE_REQUEST_FLAG_BIAS_DISABLE;
+    }
+    return 0;
+}
+
+Result<Input> open_input(const InputRequest& request) {
+    Result<ChipHandle> chip = open_chip(request.line);
+    if (!chip) return std::move(chip).error();
+    Result<gpiod_line*> line = find_line(chip->get(), request.line);
+    if (!line) return std::move(line).error();
+    const std::string text = line_text(request.line);
+    if (::gpiod_line_request_both_edges_events_flags(*line, line_consumer,
+                                                     flags_of(request.pull)) != 0)
+        return machine_error("cannot watch " + text + ": " + std::strerror(errno) +
+                             (request.pull == Pull::as_is ? "" : "; can the chip set its pull?"));
+    return Input{std::move(*chip), *line, text, request.line.active_low};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<InputLines>> open_gpiod_inputs(std::span<const InputRequest> requests) {
+    if (requests.empty() || requests.size() > max_lines)
+        return machine_error("from 1 to " + std::to_string(max_lines) +
+                             " inputs can be watched together, not " +
+                             std::to_string(requests.size()));
+    std::vector<Input> inputs;
+    for (const InputRequest& request : requests) {
+        Result<Input> input = open_input(request);
+        if (!input) return std::move(input).error();
+        inputs.push_back(std::move(*input));
+    }
+    return std::unique_ptr<InputLines>(std::make_unique<GpiodInputs>(std::move(inputs)));
+}
+
+}  // namespace lyr::gpio

@@ -1,0 +1,82 @@
+#include "target/run/course.h"
+
+namespace lyr::run {
+namespace {
+
+// How long the real-time thread sleeps at rest before it looks for what comes next.
+constexpr std::int64_t rest_nap_ns = 5'000'000;
+
+// True: go on along the path.
+Result<bool> rest(Executor& executor, Course& course, gpio::Clock& clock,
+                  const StopRequests& stop_requests) {
+    course.tell(executor);
+    course.at_rest.store(true, std::memory_order_release);
+    while (stop_requests.load(std::memory_order_relaxed) == 0) {
+        if (const Trip* trip = course.trip.load(std::memory_order_acquire)) {
+            const Result<bool> made = executor.execute_trip(*trip);
+            course.tell(executor);
+            course.trip.store(nullptr, std::memory_order_release);
+            if (!made || !*made) return made;
+        } else if (course.wanted_pace.load(std::memory_order_relaxed) > 0) {
+            course.at_rest.store(false, std::memory_order_release);
+            executor.go_on();
+            return true;
+        } else {
+            clock.wait_until_ns(clock.now_ns() + rest_nap_ns);
+        }
+    }
+    return false;
+}
+
+}  // namespace
+
+void Course::tell(const Executor& executor) {
+    for (std::size_t i = 0; i < path_steps.size(); ++i) {
+        path_steps[i].store(executor.positions()[i], std::memory_order_relaxed);
+        trip_steps[i].store(executor.trip_steps()[i], std::memory_order_relaxed);
+    }
+    levels.store(executor.levels(), std::memory_order_relaxed);
+    started.store(executor.started(), std::memory_order_relaxed);
+    time_ns.store(executor.time_ns(), std::memory_order_release);
+}
+
+StepPositions Course::steps() const {
+    StepPositions steps = steps_on_path();
+    for (std::size_t i = 0; i < steps.size(); ++i)
+        steps[i] += trip_steps[i].load(std::memory_order_relaxed);
+    return steps;
+}
+
+StepPositions Course::steps_on_path() const {
+    StepPositions steps{};
+    for (std::size_t i = 0; i < steps.size(); ++i)
+        steps[i] = path_steps[i].load(std::memory_order_relaxed);
+    return steps;
+}
+
+Result<bool> follow(std::span<const LineEvent> events, Executor& executor, Course& course,
+                    gpio::Clock& clock, const StopRequests& stop_requests) {
+    for (;;) {
+        const Result<bool> executed = executor.execute(events);
+        course.tell(executor);
+        if (!executed || *executed) return executed;
+        events = events.subspan(executor.taken());
+        const Result<bool> goes_on = rest(executor, course, clock, stop_requests);
+        if (!goes_on || !*goes_on) return goes_on;
+    }
+}
+
+void LayerLog::begin(std::span<const LayerBegin> layers, std::int64_t shift_ns) {
+    const std::lock_guard lock(mutex_);
+    for (const LayerBegin& layer : layers)
+        coming_.push_back({layer.time_ns + shift_ns, layer.layer});
+}
+
+std::uint32_t LayerLog::at(std::int64_t time_ns) {
+    const std::lock_guard lock(mutex_);
+    for (; !coming_.empty() && coming_.front().time_ns <= time_ns; coming_.pop_front())
+        layer_ = coming_.front().layer;
+    return layer_;
+}
+
+}  // namespace lyr::run

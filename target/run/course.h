@@ -1,0 +1,57 @@
+// How the real-time thread and the life of a print (life.h) share the path: one asks for rest, trips and a pace, the
+// other says where it is. A simulation is both in turn.
+//
+// Contract
+//  1. follow() writes all events, and in between rests and makes trips as asked; false: stopped for good. It returns
+//     only then, or with an error.
+//  2. While `at_rest`, nothing is written but a trip; that is taken off when it is over. The numbers are those at rest.
+//  3. Nothing is allocated or locked, and a trip is read only.
+
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <deque>
+#include <mutex>
+#include <vector>
+
+#include "target/run/executor.h"
+#include "target/run/step_stream.h"
+
+namespace lyr::run {
+
+using Trip = std::vector<LineEvent>;
+
+struct Course {
+    WantedPace wanted_pace{1};
+    std::atomic<const Trip*> trip{nullptr};
+
+    std::atomic<bool> at_rest{false};
+    std::atomic<bool> started{false};      // the drivers are on, and the head is on its way
+    std::atomic<std::int64_t> time_ns{0};  // of the events
+    std::atomic<gpio::LineMask> levels{0};
+    // Of the path, and of trips, since the start.
+    std::array<std::atomic<std::int64_t>, config::axis_count> path_steps{}, trip_steps{};
+
+    void tell(const Executor& executor);
+    // Since the start.
+    StepPositions steps() const;
+    StepPositions steps_on_path() const;
+};
+
+Result<bool> follow(std::span<const LineEvent> events, Executor& executor, Course& course,
+                    gpio::Clock& clock, const StopRequests& stop_requests);
+
+// Which layer the head is in: the planning thread knows when each begins, long before it does.
+class LayerLog {
+public:
+    void begin(std::span<const LayerBegin> layers, std::int64_t shift_ns);
+    std::uint32_t at(std::int64_t time_ns);
+
+private:
+    std::mutex mutex_;
+    std::deque<LayerBegin> coming_;
+    std::uint32_t layer_ = 0;
+};
+
+}  // namespace lyr::run

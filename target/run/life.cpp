@@ -1,0 +1,287 @@
+// Each phase waits for one thing: the motion to rest, a trip to end, a command, or heat.
+
+#include "target/run/life.h"
+
+#include <algorithm>
+
+#include "base/text.h"
+#include "target/run/demands.h"
+
+namespace lyr::run {
+namespace {
+
+std::string name_of(std::size_t heater) {
+    return std::string(config::heater_names[heater]);
+}
+
+std::optional<std::string> objection_to(const SetTemperature& set, const config::Printer& printer) {
+    const std::optional<config::Heater>& heater = printer.heaters[set.heater];
+    if (!heater) return "the printer has no heater " + name_of(set.heater);
+    const double most_c = heater->guard.high_c - headroom_c;
+    if (set.target_c > most_c)
+        return formatted("heater %s goes up to %g °C", name_of(set.heater).c_str(), most_c);
+    return std::nullopt;
+}
+
+// What the axis lets the head rise.
+double lifted_z_mm(const config::Printer& printer, double z_mm) {
+    return std::max(z_mm,
+                    std::min(z_mm + printer.pause.lift_mm, printer.axes[config::axis_z].max_mm));
+}
+
+}  // namespace
+
+std::optional<std::string> objection(const Command& command, const config::Printer& printer) {
+    if (const auto* set = std::get_if<SetTemperature>(&command)) return objection_to(*set, printer);
+    if (std::holds_alternative<SetFan>(command) && !printer.part_fan)
+        return "the printer has no part fan";
+    return std::nullopt;
+}
+
+Life::Life(const config::Printer& printer, PrintControl& control, Course& course, LayerLog& layers,
+           HeatDesk& desk, LifeOf print)
+    : printer_(printer),
+      control_(control),
+      course_(course),
+      layers_(layers),
+      desk_(desk),
+      print_(std::move(print)) {}
+
+void Life::tick(double now_s) {
+    if (!begun_s_) begun_s_ = now_s;
+    now_s_ = now_s;
+    layer_ = std::max(layer_, layers_.at(course_.time_ns.load(std::memory_order_acquire)));
+    while (const std::optional<Command> command = control_.take()) serve(*command);
+    if (const auto pause = desk_.now().pause; pause && phase_ == Phase::printing) {
+        if (*pause == format::PauseReason::filament_change)
+            rest_for(ChangeFilament{});
+        else
+            rest_for(Pause{});
+        message_ =
+            "the file asks for " + std::string(changes_filament() ? "another filament" : "a pause");
+    }
+    advance();
+    publish(state(), true);
+}
+
+void Life::serve(const Command& command) {
+    if (phase_ == Phase::over) return refuse(command, "the print is over");
+    if (const auto why = objection(command, printer_)) return refuse(command, *why);
+    if (std::holds_alternative<EmergencyStop>(command)) {
+        if (cut) cut();
+        phase_ = Phase::over;
+        ended_by_ =
+            "emergency stop: steps and heaters are off, and the position of the head is lost; "
+            "home the printer before the next print";
+    } else if (std::holds_alternative<Resume>(command)) {
+        resume();
+    } else if (const auto* set = std::get_if<SetTemperature>(&command)) {
+        set_temperature(*set);
+    } else if (const auto* fan = std::get_if<SetFan>(&command)) {
+        desk_.set_fan(fan->duty);
+    } else if (const auto* speed = std::get_if<SetSpeedFactor>(&command)) {
+        speed_factor_ = speed->factor;
+        if (phase_ == Phase::printing) course_.wanted_pace.store(pace());
+    } else {
+        rest_for(command);
+    }
+}
+
+void Life::refuse(const Command& command, const std::string& why) {
+    message_ = "refused `" + text_of(command) + "`: " + why;
+}
+
+float Life::pace() const {
+    return static_cast<float>(std::min(1.0, speed_factor_));
+}
+
+// Pause, ChangeFilament or Cancel.
+void Life::rest_for(Command reason) {
+    if (phase_ != Phase::printing && cancels()) return refuse(reason, "it is being cancelled");
+    const bool unloads = std::holds_alternative<ChangeFilament>(reason) && !is_unloaded_;
+    // One that rests does so already, and one that is about to go on rests again.
+    if (phase_ == Phase::heating) phase_ = Phase::resting, rest_since_s_ = now_s_;
+    rests_again_ = phase_ == Phase::returning;
+    reason_ = reason;
+    message_.clear();
+    if (phase_ == Phase::resting && unloads) unload();
+    if (phase_ != Phase::printing) return;
+    course_.wanted_pace.store(0);
+    left_since_s_ = now_s_;
+    phase_ = Phase::braking;
+}
+
+void Life::unload() {
+    if (!can_push()) {
+        message_ = "the tool is too cold to move filament: heat it, or change it by hand";
+        return;
+    }
+    is_unloaded_ = true;
+    const Leg leg{parked_at_, -printer_.filament.unload_mm, printer_.filament.speed_mm_s};
+    phase_ = Phase::parking;
+    make(std::span(&leg, 1), parked_at_);
+}
+
+void Life::resume() {
+    if (phase_ != Phase::resting) return refuse(Resume{}, "the print does not rest");
+    message_.clear();
+    standby_.fill(false);
+    desk_.set_standby(standby_);
+    phase_ = Phase::heating;
+}
+
+void Life::set_temperature(const SetTemperature& set) {
+    const config::Heater& heater = *printer_.heaters[set.heater];
+    const bool pushes = phase_ != Phase::resting && set.heater == config::heater_tool;
+    if (pushes && set.target_c < heater.min_extrude_c)
+        return refuse(
+            set, formatted("filament is pushed from %g °C on; pause first", heater.min_extrude_c));
+    desk_.set_target(set.heater, set.target_c);
+}
+
+void Life::advance() {
+    const bool rests = course_.at_rest.load(std::memory_order_acquire);
+    const bool travels = course_.trip.load(std::memory_order_acquire) != nullptr;
+    if (phase_ == Phase::braking && rests) return park();
+    if (phase_ == Phase::parking && !travels) return parked();
+    if (phase_ == Phase::resting) return rest();
+    if (phase_ == Phase::heating && desk_.settled()) return go_back();
+    if (phase_ == Phase::returning && !travels) return returned();
+}
+
+bool Life::can_push() const {
+    const HeaterNow tool = desk_.now().heaters[config::heater_tool];
+    const auto& settings = printer_.heaters[config::heater_tool];
+    return !tool.is_present || !settings || tool.temperature_c >= settings->min_extrude_c;
+}
+
+void Life::make(std::span<const Leg> legs, const motion::Point& from) {
+    Result<Trip> trip = plan_trip(printer_, from, legs, course_.levels.load());
+    if (!trip) {
+        message_ = "the head stays where it is: " + trip.error().message;
+        return;
+    }
+    trip_ = std::move(*trip);
+    course_.trip.store(&trip_, std::memory_order_release);
+}
+
+void Life::park() {
+    phase_ = Phase::parking;
+    left_at_ = parked_at_ = head_at(printer_, course_.steps());
+    // Before the first motion there is nothing to come away from.
+    if (!course_.started.load()) return;
+    const config::PauseSettings& pause = printer_.pause;
+    const double filament_mm_s = printer_.axes[config::axis_e].max_speed_mm_s;
+    drawn_back_mm_ = can_push() ? pause.retract_mm : 0;
+    const double z_mm = lifted_z_mm(printer_, left_at_.z);
+    if (pause.park_mm)
+        parked_at_ = {(*pause.park_mm)[0], (*pause.park_mm)[1], z_mm};
+    else
+        parked_at_.z = z_mm;
+    const std::array<Leg, 3> legs{{{left_at_, -drawn_back_mm_, filament_mm_s},
+                                   {{left_at_.x, left_at_.y, z_mm}, 0, pause.speed_mm_s},
+                                   {parked_at_, 0, pause.speed_mm_s}}};
+    make(legs, left_at_);
+}
+
+void Life::parked() {
+    rest_since_s_ = now_s_;
+    phase_ = Phase::resting;
+    if (changes_filament() && !is_unloaded_) unload();
+    if (!cancels()) return;
+    ended_by_ = "cancelled; the head is parked";
+    phase_ = Phase::over;
+    ++control_.stop_requests();
+}
+
+void Life::rest() {
+    if (cancels()) return parked();
+    const double rested_s = now_s_ - rest_since_s_;
+    std::array<bool, config::heater_count> standby{};
+    for (std::size_t i = 0; i < standby.size(); ++i)
+        standby[i] = rested_s >= (i == config::heater_tool ? printer_.pause.tool_off_s
+                                                           : printer_.pause.bed_off_s);
+    if (standby == standby_) return;
+    standby_ = standby;
+    desk_.set_standby(standby_);
+}
+
+void Life::go_back() {
+    if (cancels()) return parked();
+    phase_ = Phase::returning;
+    if (!course_.started.load()) return;
+    const double filament_mm_s = printer_.axes[config::axis_e].max_speed_mm_s;
+    const config::FilamentSettings& filament = printer_.filament;
+    const double load_mm = is_unloaded_ ? filament.load_mm + filament.purge_mm : 0;
+    const double again_mm = is_unloaded_ ? -drawn_back_mm_ : 0;
+    const double mm_s = printer_.pause.speed_mm_s;
+    const std::array<Leg, 5> legs{{{parked_at_, load_mm, filament.speed_mm_s},
+                                   {parked_at_, again_mm, filament_mm_s},
+                                   {{left_at_.x, left_at_.y, parked_at_.z}, 0, mm_s},
+                                   {left_at_, 0, mm_s},
+                                   {left_at_, drawn_back_mm_, filament_mm_s}}};
+    make(legs, parked_at_);
+}
+
+void Life::returned() {
+    is_unloaded_ = false;
+    if (cancels() || rests_again_) {
+        rests_again_ = false;
+        return park();
+    }
+    phase_ = Phase::printing;
+    paused_s_ += now_s_ - left_since_s_;
+    desk_.end_pause();
+    course_.wanted_pace.store(pace());
+}
+
+PrintState Life::state() const {
+    if (control_.stop_requests().load() != 0) return PrintState::stopping;
+    switch (phase_) {
+        case Phase::printing:
+            return desk_.now().waits ? PrintState::heating : PrintState::printing;
+        case Phase::braking:
+        case Phase::parking:
+            return cancels() ? PrintState::stopping : PrintState::pausing;
+        case Phase::resting:
+            return PrintState::paused;
+        case Phase::heating:
+        case Phase::returning:
+            return PrintState::resuming;
+        case Phase::over:
+            break;
+    }
+    return PrintState::stopping;
+}
+
+void Life::publish(PrintState state, bool is_position_known) {
+    constexpr double ns_per_s = 1e9;
+    const StepPositions steps = course_.steps();
+    const motion::Point head = head_at(printer_, steps);
+    const HeatNow heat = desk_.now();
+    PrintStatus status;
+    status.state = state;
+    status.message = message_;
+    status.file = print_.file;
+    status.layer = layer_;
+    status.layers = print_.layers;
+    status.position_mm = {head.x, head.y, head.z};
+    status.is_position_known = is_position_known;
+    status.time_s = static_cast<double>(course_.time_ns.load()) / ns_per_s;
+    status.elapsed_s = now_s_ - begun_s_.value_or(now_s_);
+    status.estimated_s = print_.estimated_s;
+    status.heaters = heat.heaters;
+    status.fan = heat.fan;
+    status.speed_factor = speed_factor_;
+    status.filament_mm = static_cast<double>(course_.steps_on_path()[config::axis_e]) /
+                         printer_.axes[config::axis_e].steps_per_mm;
+    control_.publish(std::move(status));
+}
+
+void Life::end(const Status& result, bool is_position_known) {
+    phase_ = Phase::over;
+    if (!result) message_ = result.error().message;
+    publish(result ? PrintState::done : PrintState::failed, is_position_known);
+}
+
+}  // namespace lyr::run

@@ -1,0 +1,114 @@
+// The life of a print: what becomes of commands, of pauses that the file asks for, and of the head and the heat
+// meanwhile. It runs on an ordinary thread, beside the motion, and asks for all that it wants through a Course, a
+// HeatDesk and the number of requests to stop; so it is the same in a print and in a simulation.
+//
+//     printing -> coming to rest -> going to the park place -> resting -> heating -> coming back -> printing
+//
+// Contract
+//  1. A pause brings the head to rest on its path; then the filament is drawn back, the head lifted and parked. What
+//     resumes goes back the same way. All in all no motor has moved then, but the extruder's by what a change of filament
+//     purges, and the path goes on with the event at which it was left.
+//  2. Filament is moved only if the tool has min_extrude_c, before a resume it is heated and waited for.
+//  3. A pause that lasts for longer than printer.toml says lets tool, bed and chamber go cold.
+//  4. A cancel parks too, and ends by a request to stop; an emergency stop does so at once, and calls `cut`.
+//  5. What cannot be done as things are is refused, and status().message says why.
+//  6. Commands take effect within the next tick.
+
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "target/run/course.h"
+#include "target/run/heat_desk.h"
+#include "target/run/print_control.h"
+#include "target/run/trip.h"
+
+namespace lyr::run {
+
+// Why a command can never be carried out on this printer; none: it can, if the print is at the right point.
+std::optional<std::string> objection(const Command& command, const config::Printer& printer);
+
+struct LifeOf {
+    std::string file;
+    std::uint32_t layers = 0;
+    double estimated_s = 0;
+};
+
+class Life {
+public:
+    // All but `print` must outlive it.
+    Life(const config::Printer& printer, PrintControl& control, Course& course, LayerLog& layers,
+         HeatDesk& desk, LifeOf print);
+    Life(const Life&) = delete;
+    Life& operator=(const Life&) = delete;
+
+    // Takes heat away at once, from any thread.
+    std::function<void()> cut;
+
+    void tick(double now_s);
+    // What the print came to; the last status.
+    void end(const Status& result, bool is_position_known);
+
+    std::uint32_t layer() const { return layer_; }
+    // From leaving the path to being back.
+    double paused_s() const { return paused_s_; }
+    bool rests() const { return phase_ == Phase::resting; }
+    // Ended by command: what to say.
+    const std::optional<std::string>& ended_by() const { return ended_by_; }
+
+private:
+    enum class Phase : std::uint8_t {
+        printing,
+        braking,
+        parking,
+        resting,
+        heating,
+        returning,
+        over,
+    };
+
+    void serve(const Command& command);
+    void rest_for(Command reason);
+    void resume();
+    void set_temperature(const SetTemperature& set);
+    void advance();
+    void park();
+    void parked();
+    void rest();
+    void go_back();
+    void returned();
+    void unload();
+    void make(std::span<const Leg> legs, const motion::Point& from);
+    bool can_push() const;
+    bool changes_filament() const { return std::holds_alternative<ChangeFilament>(reason_); }
+    bool cancels() const { return std::holds_alternative<Cancel>(reason_); }
+    float pace() const;
+    void refuse(const Command& command, const std::string& why);
+    PrintState state() const;
+    void publish(PrintState state, bool is_position_known);
+
+    const config::Printer& printer_;
+    PrintControl& control_;
+    Course& course_;
+    LayerLog& layers_;
+    HeatDesk& desk_;
+    LifeOf print_;
+
+    Phase phase_ = Phase::printing;
+    Command reason_ = Pause{};       // of the rest
+    std::optional<double> begun_s_;  // the first tick
+    double now_s_ = 0, left_since_s_ = 0, rest_since_s_ = 0, paused_s_ = 0;
+    double speed_factor_ = 1;
+    Trip trip_;  // while the motion makes it
+    motion::Point left_at_, parked_at_;
+    double drawn_back_mm_ = 0;
+    bool is_unloaded_ = false;
+    bool rests_again_ = false;  // as soon as it has returned
+    std::array<bool, config::heater_count> standby_{};
+    std::uint32_t layer_ = 0;
+    std::string message_;
+    std::optional<std::string> ended_by_;
+};
+
+}  // namespace lyr::run
