@@ -9,6 +9,7 @@
 #include "base/nearest_name.h"
 #include "base/text.h"
 #include "target/control/link.h"
+#include "target/control/places.h"
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/text.h"
-#include "target/run/demands.h"
+#include "target/run/life.h"
 
 namespace lyr::control {
 namespace {
@@ -85,8 +85,11 @@ std::string Dispatcher::carry_out(const std::string& id, const Commands& command
 
 std::optional<Refusal> Dispatcher::objection(const Commands& commands) const {
     const PrintState state = print_.status().state;
-    for (const run::Command& command : commands)
+    for (const run::Command& command : commands) {
         if (auto refusal = objection(command, state)) return refusal;
+        if (const auto why = run::objection(command, printer_))
+            return Refusal{"null", ErrorCode::bad_value, *why};
+    }
     return std::nullopt;
 }
 
@@ -100,7 +103,7 @@ std::optional<Refusal> Dispatcher::objection(const run::Command& command, PrintS
                                                        : Objection();
         },
         [&](const run::Resume&) {
-            return is_at_rest(state) ? Objection() : wrong_state("cannot resume", state);
+            return state == PrintState::paused ? Objection() : wrong_state("cannot resume", state);
         },
         [&](const run::ChangeFilament&) {
             return is_over(state) ? wrong_state("cannot change filament", state) : Objection();
@@ -110,17 +113,17 @@ std::optional<Refusal> Dispatcher::objection(const run::Command& command, PrintS
         },
         [&](const run::SetTemperature& set) -> Objection {
             if (is_over(state)) return wrong_state("cannot set temperatures", state);
-            const std::string name(config::heater_names[set.heater]);
             const auto& heater = printer_.heaters[set.heater];
             if (!heater || !print_.status().heaters[set.heater].is_present)
-                return Refusal{"null", ErrorCode::no_such_heater,
-                               "this print has no heater " + name};
-            const double highest_c = heater->guard.high_c - run::headroom_c;
-            if (set.target_c <= highest_c) return std::nullopt;
-            return Refusal{"null", ErrorCode::bad_value,
-                           name + "_c must be " + shortest(highest_c) + " at most, which is " +
-                               shortest(run::headroom_c) + " below the end of heater." + name +
-                               ".range_c"};
+                return Refusal{
+                    "null", ErrorCode::no_such_heater,
+                    "this print has no heater " + std::string(config::heater_names[set.heater])};
+            const bool pushes = set.heater == config::heater_tool && state != PrintState::paused;
+            if (pushes && set.target_c < heater->min_extrude_c)
+                return Refusal{"null", ErrorCode::wrong_state,
+                               "filament is pushed from " + shortest(heater->min_extrude_c) +
+                                   " °C on; pause first"};
+            return std::nullopt;
         },
         [&](const auto&) {
             return is_over(state) ? wrong_state("cannot set this", state) : Objection();

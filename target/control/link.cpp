@@ -4,12 +4,9 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <utility>
 
 #include "base/text.h"
@@ -93,27 +90,6 @@ Result<Answer> Link::next(std::chrono::milliseconds longest_wait) {
     auto answer = read_answer(line);
     if (!answer) return problem("this is no control socket of lyrrun: it says " + in_quotes(line));
     return std::move(*answer);
-}
-
-std::vector<std::string> socket_folders() {
-    std::vector<std::string> folders{"/run/lyr"};
-    // Of the user who is logged in; where nobody is, as for a service, there is none.
-    const char* own = std::getenv("XDG_RUNTIME_DIR");
-    if (own && *own == '/') folders.push_back(std::string(own) + "/lyr");
-    return folders;
-}
-
-std::vector<std::string> sockets() {
-    std::vector<std::string> found;
-    for (const std::string& folder : socket_folders()) {
-        std::error_code error;
-        for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
-             entry.increment(error))
-            if (entry->path().extension() == ".sock" && entry->is_socket(error))
-                found.push_back(entry->path().string());
-    }
-    std::ranges::sort(found);
-    return found;
 }
 
 }  // namespace lyr::control

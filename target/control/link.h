@@ -3,13 +3,11 @@
 // Contract
 //  1. open() has the greeting of a server that speaks this protocol; the error (status machine) says what it found else.
 //  2. No answer within patience is an error, as is the end of the connection.
-//  3. sockets() lists those in the folders where lyrrun puts them.
 
 #pragma once
 
 #include <chrono>
 #include <string>
-#include <vector>
 
 #include "base/diagnostic.h"
 #include "target/control/answer.h"
@@ -41,9 +39,5 @@ private:
     Greeting greeting_;
     std::string held_;
 };
-
-// /run/lyr, and the user's own folder for such things.
-std::vector<std::string> socket_folders();
-std::vector<std::string> sockets();
 
 }  // namespace lyr::control

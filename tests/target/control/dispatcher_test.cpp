@@ -84,16 +84,19 @@ TEST_CASE("dispatcher 2: what cannot be done is refused and nothing of it is don
     CHECK(scene.code(R"({"command":"set","fan":1,"tool_c":271})") == "bad_value");
     CHECK(scene.answer(R"({"command":"set","tool_c":271})")["error"]["message"]
               .get<std::string>()
-              .find("heater.tool.range_c") != std::string::npos);
+              .find("goes up to 270") != std::string::npos);
     CHECK(scene.code(R"({"command":"subscribe","interval_s":1})") == "unknown_command");
+    // Filament would be pushed cold; when the print rests it is not.
+    CHECK(scene.code(R"({"command":"set","tool_c":100})") == "wrong_state");
     CHECK_FALSE(scene.print.take());
     CHECK(scene.code(R"({"command":"set","tool_c":270})") == "ok");
+    CHECK(Scene(PrintState::paused).code(R"({"command":"set","tool_c":0})") == "ok");
 }
 
 TEST_CASE("dispatcher 2: which command in which state") {
     const std::vector<std::pair<const char*, const char*>> allowed{
         // heating, printing, pausing, paused, resuming, stopping, done, failed
-        {"pause", "yynnynnn"}, {"resume", "nnyynnnn"},          {"cancel", "yyyyynnn"},
+        {"pause", "yynnynnn"}, {"resume", "nnnynnnn"},          {"cancel", "yyyyynnn"},
         {"stop", "yyyyyyyy"},  {"change_filament", "yyyyynnn"}, {"status", "yyyyyyyy"},
     };
     for (const auto& [command, states] : allowed)
