@@ -242,6 +242,7 @@ Result<PrintReport> run(const PrintJob& job, const Prepared& prepared, gpio::Gpi
     PrintReport report;
     report.warnings = prepared.notes;
     lock_memory(report.warnings);
+    if (job.begun) job.begun();
     gpio::TracingClock traced(clock);
     Executor executor(chip, traced, executor_timing(job.printer), shared.stop_requests,
                       &shared.marks, &shared.course.wanted_pace);

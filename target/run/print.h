@@ -32,6 +32,8 @@ struct PrintJob {
     bool no_heat = false;
     ProgressSink progress;
     PrintControl* control = nullptr;  // none: only signals and buttons do something
+    // Called once, when all lines are held; from here on threads may be started.
+    std::function<void()> begun{};
 };
 
 struct PrintReport {
