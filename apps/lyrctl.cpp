@@ -1,6 +1,7 @@
 // lyrctl: tells how a print is going, and controls it, through the socket of the lyrrun that prints.
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "apps/command_line.h"
@@ -10,6 +11,8 @@
 #include "base/text.h"
 #include "target/control/link.h"
 #include "target/control/places.h"
+#include "target/control/web/token.h"
+#include "target/control/web/web_page.h"
 
 namespace {
 
@@ -20,6 +23,7 @@ struct Arguments {
     std::vector<std::string> words;
     std::string socket;
     bool json = false, watch = false;
+    std::string token_path;
 };
 
 constexpr Program program{
@@ -31,6 +35,7 @@ constexpr Program program{
     "  change-filament   pause, and draw the filament out; resume when the next one is in\n"
     "  cancel            park, heaters off, the print is over\n"
     "  stop              EMERGENCY: motors and heaters at once; the print is lost\n"
+    "  web PORT          a page that shows and controls prints, for this machine's browsers\n"
     "  set NAME=VALUE... tool, bed, chamber: °C (0: off); fan, speed: percent. The file's own\n"
     "                    settings follow when it comes to them\n"
     "\n"
@@ -38,6 +43,7 @@ constexpr Program program{
     "  lyrctl status\n"
     "  lyrctl status --watch\n"
     "  lyrctl set tool=210 bed=60 fan=50% speed=120%\n"
+    "  lyrctl web 8080\n"
     "  lyrctl pause --socket /run/lyr/ender.sock\n"
     "\n"
     "A command is done when the status says so; lyrctl ends as soon as lyrrun has accepted it.\n"
@@ -51,6 +57,10 @@ void add_options(CLI::App& app, Arguments& arguments) {
     add_file(app, "--socket", arguments.socket,
              "The printer's socket, where there are several, or one in another place");
     add_flag(app, "--json", arguments.json, "status: one JSON object, a line each with --watch");
+    add_file(
+        app, "--token", arguments.token_path,
+        "web: a file with the token that the page asks for; made if it is missing, readable by "
+        "its owner alone  [a new token each time, which is told]");
     add_flag(app, "--watch", arguments.watch, "status: again and again, until the print is over");
 }
 
@@ -65,7 +75,7 @@ constexpr Plain plain_commands[] = {
 };
 
 Diagnostic unknown_command(const std::string& word) {
-    std::vector<std::string> known{"set"};
+    std::vector<std::string> known{"set", "web"};
     for (const Plain& plain : plain_commands) known.emplace_back(plain.word);
     const std::string nearest = nearest_name(word, known);
     return usage("unknown command " + in_quotes(word) +
@@ -107,6 +117,7 @@ Result<std::string> setting(const std::string& word) {
 Result<std::string> request_of(const Arguments& arguments) {
     const auto& words = arguments.words;
     if (words.empty()) return usage("a command is required");
+    if (words[0] != "web" && !arguments.token_path.empty()) return usage("--token goes with web");
     if (words[0] != "status" && (arguments.json || arguments.watch))
         return usage("--json and --watch go with status");
     if (words[0] == "set") {
@@ -153,11 +164,10 @@ Status show(const control::Told& told, const Arguments& arguments) {
 
 Status watch(control::Link& link, const Arguments& arguments) {
     constexpr const char* subscribe = R"({"id":1,"command":"subscribe","interval_s":1})";
-    constexpr std::chrono::seconds longest_wait{10};
     const SignalWatch signals(program.name);
     if (Status sent = link.send(subscribe); !sent) return sent;
     for (;;) {
-        const Result<control::Answer> answer = link.next(longest_wait);
+        const Result<control::Answer> answer = link.next();
         if (!answer) return answer.error();
         if (const auto* refused = std::get_if<control::Refused>(&*answer))
             return not_done(refused->message);
@@ -170,7 +180,32 @@ Status watch(control::Link& link, const Arguments& arguments) {
     }
 }
 
+Status serve_page(const Arguments& arguments) {
+    constexpr std::chrono::milliseconds longest_wait{250};
+    const auto& words = arguments.words;
+    const std::optional<double> port = words.size() == 2 ? finite_number(words[1]) : std::nullopt;
+    if (!port || *port < 0 || *port > 65535 || *port != std::floor(*port))
+        return usage("web: expected a port, 1 to 65535, or 0 for one that is free");
+    if (arguments.json || arguments.watch) return usage("--json and --watch go with status");
+    // It waits for the print if there is none yet.
+    const std::string socket = arguments.socket;
+    const bool is_new = arguments.token_path.empty();
+    Result<std::string> token =
+        is_new ? control::random_token() : control::token_in(arguments.token_path);
+    if (!token) return token.error();
+    control::Relay relay(socket);
+    const SignalWatch signals(program.name);
+    Result<control::WebPage> page =
+        control::WebPage::open({static_cast<std::uint16_t>(*port), *token}, relay);
+    if (!page) return page.error();
+    // What stands behind # stays in the browser.
+    if (Status told = tell(page->address() + (is_new ? "#token=" + *token : "") + '\n'); !told)
+        return told;
+    for (;;) page->serve(longest_wait);
+}
+
 Status work(const Arguments& arguments) {
+    if (!arguments.words.empty() && arguments.words[0] == "web") return serve_page(arguments);
     const Result<std::string> request = request_of(arguments);
     if (!request) return request.error();
     const Result<std::string> socket = find_socket(arguments);

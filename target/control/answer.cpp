@@ -72,8 +72,11 @@ std::optional<Answer> read_answer(std::string_view line) {
     if (object.contains("greeting"))
         return Greeting{value_in(object, "protocol", 0), value_in(object, "printer", std::string()),
                         value_in(object, "file", std::string())};
-    if (const auto status = object.find("status"); status != object.end() && status->is_object())
-        return told_in(*status);
+    if (const auto status = object.find("status"); status != object.end() && status->is_object()) {
+        Told told = told_in(*status);
+        told.is_event = object.contains("event");
+        return told;
+    }
     if (!object.contains("ok")) return std::nullopt;
     if (value_in(object, "ok", false)) return Accepted{};
     const auto error = object.find("error");

@@ -27,7 +27,8 @@ struct Accepted {};
 struct Told {
     run::PrintStatus status;
     std::string printer;
-    std::string json;  // as it came
+    std::string json;  // of the status
+    bool is_event = false;
 };
 using Answer = std::variant<Greeting, Refused, Accepted, Told>;
 

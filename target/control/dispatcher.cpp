@@ -3,6 +3,7 @@
 #include "target/control/dispatcher.h"
 
 #include <cmath>
+#include <filesystem>
 
 #include "base/text.h"
 #include "target/run/life.h"
@@ -40,9 +41,11 @@ std::string number(double value, int digits) {
 }  // namespace
 
 std::string Dispatcher::greeting() const {
+    std::error_code error;
+    const auto path = std::filesystem::absolute(print_.status().file, error);
     return "{\"greeting\":\"lyrrun\",\"protocol\":" + std::to_string(protocol_version) +
            ",\"printer\":" + json_text(escaped(printer_.name)) +
-           ",\"file\":" + json_text(escaped(print_.status().file)) + '}';
+           ",\"file\":" + json_text(escaped(path.string())) + '}';
 }
 
 std::string Dispatcher::status_event() const {

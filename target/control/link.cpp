@@ -44,7 +44,8 @@ Link::Link(Link&& other) noexcept
     : path_(std::move(other.path_)),
       socket_(std::exchange(other.socket_, -1)),
       greeting_(std::move(other.greeting_)),
-      held_(std::move(other.held_)) {}
+      held_(std::move(other.held_)),
+      line_(std::move(other.line_)) {}
 
 Link::~Link() {
     if (socket_ >= 0) ::close(socket_);
@@ -72,24 +73,31 @@ Status Link::send(const std::string& line) {
     return Done{};
 }
 
-Result<Answer> Link::next(std::chrono::milliseconds longest_wait) {
+Result<Answer> Link::next() {
+    Result<std::optional<Answer>> answer = next_within(patience);
+    if (!answer) return answer.error();
+    if (!*answer) return problem("lyrrun does not answer");
+    return std::move(**answer);
+}
+
+Result<std::optional<Answer>> Link::next_within(std::chrono::milliseconds wait) {
     std::size_t end;
     while ((end = held_.find('\n')) == std::string::npos) {
         pollfd waiting{socket_, POLLIN, 0};
-        const int ready = ::poll(&waiting, 1, static_cast<int>(longest_wait.count()));
+        const int ready = ::poll(&waiting, 1, static_cast<int>(wait.count()));
         if (ready < 0 && errno == EINTR) continue;
-        if (ready <= 0) return problem("lyrrun does not answer");
+        if (ready <= 0) return std::optional<Answer>();
         std::array<char, 4096> bytes;
         const ssize_t count = ::recv(socket_, bytes.data(), bytes.size(), 0);
         if (count <= 0) return problem("the print has ended");
         held_.append(bytes.data(), static_cast<std::size_t>(count));
         if (held_.size() > most_held_bytes) return problem("this is no control socket of lyrrun");
     }
-    const std::string line = held_.substr(0, end);
+    line_ = held_.substr(0, end);
     held_.erase(0, end + 1);
-    auto answer = read_answer(line);
-    if (!answer) return problem("this is no control socket of lyrrun: it says " + in_quotes(line));
-    return std::move(*answer);
+    std::optional<Answer> answer = read_answer(line_);
+    if (!answer) return problem("this is no control socket of lyrrun: it says " + in_quotes(line_));
+    return answer;
 }
 
 }  // namespace lyr::control

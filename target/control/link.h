@@ -2,11 +2,12 @@
 //
 // Contract
 //  1. open() has the greeting of a server that speaks this protocol; the error (status machine) says what it found else.
-//  2. No answer within patience is an error, as is the end of the connection.
+//  2. No answer within patience is an error, as is the end of the connection; after that, all else is.
 
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
 
 #include "base/diagnostic.h"
@@ -26,8 +27,13 @@ public:
 
     const Greeting& greeting() const { return greeting_; }
     Status send(const std::string& line);
-    // The next one, whatever it answers. `longest_wait`: beyond patience, for events.
-    Result<Answer> next(std::chrono::milliseconds longest_wait = patience);
+    // The next one, whatever it answers.
+    Result<Answer> next();
+    // The same, or none within that time.
+    Result<std::optional<Answer>> next_within(std::chrono::milliseconds wait);
+    // What that was, as it came.
+    const std::string& line() const { return line_; }
+    int descriptor() const { return socket_; }
 
 private:
     Link(std::string path, int socket) : path_(std::move(path)), socket_(socket) {}
@@ -37,7 +43,7 @@ private:
     std::string path_;
     int socket_;
     Greeting greeting_;
-    std::string held_;
+    std::string held_, line_;
 };
 
 }  // namespace lyr::control

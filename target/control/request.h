@@ -28,7 +28,7 @@ enum class ErrorCode : std::uint8_t {
     wrong_state,       // the print cannot do this now
     no_such_heater,    // ... that this printer has
     busy,              // too many commands wait already
-    forbidden,         // of the web page: no token, or not from the page itself
+    forbidden,         // of the page: no token, or another site's page asks
 };
 std::string_view name_of(ErrorCode code);
 

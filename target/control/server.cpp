@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
+#include <vector>
 
 #include "target/control/client.h"
 
@@ -43,10 +44,9 @@ private:
 
 class Server::Work {
 public:
-    Work(std::optional<Listener> listener, Dispatcher& dispatcher, std::optional<Guest> guest)
+    Work(Listener listener, Dispatcher& dispatcher)
         : listener_(std::move(listener)),
           dispatcher_(dispatcher),
-          guest_(std::move(guest)),
           wake_(::eventfd(0, EFD_CLOEXEC)) {}
     ~Work() { ::close(wake_); }
     Work(const Work&) = delete;
@@ -67,21 +67,19 @@ private:
                       [&](const auto& client) { return client->is_over(now, stuck_time); });
     }
 
-    std::optional<Listener> listener_;
+    Listener listener_;
     Dispatcher& dispatcher_;
-    std::optional<Guest> guest_;
     int wake_;
     std::vector<std::unique_ptr<Client>> clients_;
     // Connections are not accepted before: the process had no descriptor left.
     Clock::time_point accept_from_{};
 };
 
-// The wake-up first, then the listener and the guest (with descriptor -1, which poll passes over, where there is none).
+// The wake-up first, then the listener, then the clients. Descriptor -1 is passed over.
 std::vector<pollfd> Server::Work::awaited() const {
     std::vector<pollfd> all{{wake_, POLLIN, 0}};
-    const bool accepts = listener_ && accept_from_ <= Clock::now();
-    all.push_back({accepts ? listener_->descriptor() : -1, POLLIN, 0});
-    all.push_back({guest_ ? guest_->descriptor : -1, POLLIN, 0});
+    const bool accepts = accept_from_ <= Clock::now();
+    all.push_back({accepts ? listener_.descriptor() : -1, POLLIN, 0});
     for (const auto& client : clients_) {
         const int events =
             (client->wants_more() ? POLLIN : 0) | (client->has_unsent() ? POLLOUT : 0);
@@ -92,7 +90,6 @@ std::vector<pollfd> Server::Work::awaited() const {
 
 int Server::Work::sleep_ms(Clock::time_point now) const {
     Clock::time_point until = now + longest_sleep;
-    if (guest_) until = std::min(until, now + Clock::duration(guest_period));
     for (const auto& client : clients_)
         if (client->subscription().interval && !client->has_unsent())
             until = std::min(until, client->subscription().next_due);
@@ -102,7 +99,7 @@ int Server::Work::sleep_ms(Clock::time_point now) const {
 
 void Server::Work::accept_waiting(Clock::time_point now) {
     for (;;) {
-        const int socket = listener_->accept();
+        const int socket = listener_.accept();
         if (socket < 0) {
             if (errno != EAGAIN && errno != EINTR) accept_from_ = now + longest_sleep;
             return;
@@ -129,18 +126,17 @@ void Server::Work::run() {
         if (all[0].revents) break;
         const Clock::time_point now = Clock::now();
         for (std::size_t i = 0; i < clients_.size(); ++i) {
-            if (all[i + 3].revents) clients_[i]->serve(dispatcher_, now);
+            if (all[i + 2].revents) clients_[i]->serve(dispatcher_, now);
             clients_[i]->tell_status(dispatcher_, now);
         }
         dismiss(now);
         if (all[1].revents) accept_waiting(now);
-        if (guest_) guest_->serve();
     }
     for (const auto& client : clients_) client->tell_status(dispatcher_, Clock::now(), true);
 }
 
-Server::Server(std::optional<Listener> listener, Dispatcher& dispatcher, std::optional<Guest> guest)
-    : work_(std::make_unique<Work>(std::move(listener), dispatcher, std::move(guest))) {
+Server::Server(Listener listener, Dispatcher& dispatcher)
+    : work_(std::make_unique<Work>(std::move(listener), dispatcher)) {
     const BlockedSignals blocked;
     thread_ = std::thread([this] { work_->run(); });
 }

@@ -1,4 +1,4 @@
-// The control thread: serves the clients of the socket, and the web page if there is one.
+// The control thread: serves the clients of the socket.
 //
 // Contract
 //  1. Nothing that clients do holds the print up: they are served by one thread of ordinary priority, which never waits
@@ -12,32 +12,21 @@
 
 #pragma once
 
-#include <functional>
 #include <memory>
-#include <optional>
 #include <thread>
-#include <vector>
 
 #include "target/control/dispatcher.h"
 #include "target/control/listener.h"
 
 namespace lyr::control {
 
-// What else the thread serves.
-struct Guest {
-    int descriptor = -1;
-    // When the descriptor is readable, and once in guest_period at least.
-    std::function<void()> serve;
-};
-
 class Server {
 public:
     static constexpr std::size_t most_clients = 16;
     static constexpr std::chrono::seconds stuck_time{10};
-    static constexpr std::chrono::milliseconds guest_period{250};
 
-    // All that is referred to must outlive it.
-    Server(std::optional<Listener> listener, Dispatcher& dispatcher, std::optional<Guest> guest);
+    // The dispatcher must outlive it.
+    Server(Listener listener, Dispatcher& dispatcher);
     ~Server();
     Server(const Server&) = delete;
     Server& operator=(const Server&) = delete;

@@ -40,7 +40,7 @@ struct Scene {
         fs::create_directories((folder / name).parent_path());
         auto listener = control::Listener::open(folder / name);
         REQUIRE(listener.ok());
-        server.emplace(std::move(*listener), dispatcher, std::nullopt);
+        server.emplace(std::move(*listener), dispatcher);
     }
     // The user's folder of sockets is the test's.
     Ended lyrctl(const std::string& arguments) const {
@@ -153,4 +153,30 @@ TEST_CASE("lyrctl: --watch goes on until the print is over and ends as it did") 
                            scene.folder / "err");
     CHECK(watching.wait_for([&] { return watching.blocks(SIGINT); }));
     CHECK(watching.end(SIGINT) == 8);
+}
+
+TEST_CASE(
+    "lyrctl: web tells its address with a token, or the token is in a file, and ends on request") {
+    const Scene scene("lyrctl-web");
+    const auto told = [&](const std::string& more) {
+        // Its output goes to a file, since it does not end by itself.
+        fs::remove(scene.folder / "out");
+        const Ended ended =
+            scene.lyrctl("web 0 --socket lyr/a.sock " + more +
+                         " >out & while [ ! -s out ]; do sleep 0.02; done; kill $!; "
+                         "wait $!");
+        CHECK(ended.status == 8);
+        return text_of(scene.folder / "out");
+    };
+    CHECK(told("").starts_with("http://127.0.0.1:"));
+    CHECK(told("").find("/#token=") != std::string::npos);
+    const std::string kept = told("--token token");
+    CHECK(kept.ends_with("/\n"));
+    CHECK(text_of(scene.folder / "token").size() == 33);
+    for (const char* port : {"", "http", "-1", "65536", "80.5", "80 81"})
+        check_failure(scene.lyrctl(std::string("web ") + port), 2, "web: expected a port");
+    check_failure(scene.lyrctl("pause --token token"), 2, "--token goes with web");
+    check_failure(scene.lyrctl("web 0 --token lyr"), 3, "must be in a file");
+    scene.folder.write("open", "0123456789abcdef");
+    check_failure(scene.folder.run("chmod 644 open; lyrctl web 0 --token open"), 3, "chmod 600");
 }

@@ -91,7 +91,7 @@ TEST_CASE("link 1: asks and is answered; what is no server of this protocol is t
     {
         auto listener = Listener::open(path);
         REQUIRE(listener.ok());
-        const Server server(std::move(*listener), dispatcher, {});
+        const Server server(std::move(*listener), dispatcher);
         Result<Link> link = Link::open(path);
         REQUIRE(link.ok());
         CHECK(link->greeting().printer == printer.name);

@@ -23,14 +23,13 @@ struct Scene {
     Dispatcher dispatcher{print, printer};
     std::optional<Server> server;
 
-    explicit Scene(const std::string& name, std::optional<Guest> guest = {})
-        : path(socket_path(name)) {
+    explicit Scene(const std::string& name) : path(socket_path(name)) {
         run::PrintStatus status;
         status.state = run::PrintState::printing;
         print.publish(status);
         auto listener = Listener::open(path);
         REQUIRE(listener.ok());
-        server.emplace(std::move(*listener), dispatcher, std::move(guest));
+        server.emplace(std::move(*listener), dispatcher);
     }
 };
 
@@ -159,24 +158,4 @@ TEST_CASE("server 1: random bytes from several clients, and the next one is serv
     client.send(status_line);
     CHECK(code_of(client.line()) == "ok");
     CHECK_FALSE(scene.print.take());
-}
-
-TEST_CASE("server: the guest is served now and then, and when its descriptor is readable") {
-    int pipe[2];
-    REQUIRE(::pipe(pipe) == 0);
-    std::atomic<int> served{0}, read{0};
-    Guest guest{pipe[0], [&] {
-                    ++served;
-                    pollfd waiting{pipe[0], POLLIN, 0};
-                    char byte;
-                    if (::poll(&waiting, 1, 0) > 0) read += ::read(pipe[0], &byte, 1) == 1;
-                }};
-    Scene scene("guest", guest);
-    REQUIRE(::write(pipe[1], "x", 1) == 1);
-    for (int i = 0; i < 1000 && (read < 1 || served < 4); ++i) std::this_thread::sleep_for(5ms);
-    CHECK(read == 1);
-    CHECK(served >= 4);
-    scene.server.reset();
-    ::close(pipe[0]);
-    ::close(pipe[1]);
 }
