@@ -6,11 +6,13 @@
 
 #include "apps/command_line.h"
 #include "apps/files.h"
+#include "apps/print_server.h"
 #include "apps/printer_file.h"
 #include "apps/progress_line.h"
 #include "apps/signal_watch.h"
 #include "base/read_text.h"
 #include "base/text.h"
+#include "target/run/dry_run.h"
 #include "target/run/print.h"
 #include "target/run/simulate.h"
 #include "target/run/tune.h"
@@ -27,7 +29,8 @@ struct Arguments {
         double target_c = 0;
     };
     std::optional<Tune> tune;
-    bool simulate = false, json = false, no_heat = false;
+    bool simulate = false, json = false, no_heat = false, dry_run = false;
+    std::string socket;
 };
 
 constexpr Program program{
@@ -40,6 +43,7 @@ constexpr Program program{
     "GTKWave\n"
     "  lyrrun part.lyr --printer printer.toml             print\n"
     "  lyrrun part.lyr --printer printer.toml --no-heat   move the machine, heaters off\n"
+    "  lyrrun part.lyr --dry-run                          try that without a board, in real time\n"
     "  lyrrun --printer printer.toml --tune tool=210      find a heater's kp, ki and kd\n"
     "  lyrrun part.lyr --simulate --faults faults.txt     see what the guards do about faults\n"
     "\n"
@@ -47,6 +51,7 @@ constexpr Program program{
     "printer. Ctrl-C brings the head to rest on its path and releases all lines; a second\n"
     "Ctrl-C does so at once. Whatever ends it, all heaters go off. docs/configuration.md explains\n"
     "printer.toml, docs/algorithms/heat.md the guards and the file of faults.\n"
+    "lyrctl shows and controls a print (docs/control-protocol.md).\n"
     "What is reported goes to standard error where the trace goes to standard output.\n"
     "Exit status: 0 done, 2 options, 3 input, 4 not supported yet, 6 output, 7 the machine cannot\n"
     "or did not do it, 8 stopped on request.\n"};
@@ -76,6 +81,10 @@ void add_options(CLI::App& app, Arguments& arguments) {
     add_flag(app, "--json", arguments.json, "Report the simulation as one JSON object");
     add_flag(app, "--no-heat", arguments.no_heat,
              "Pass over the temperatures and fans that the file sets");
+    add_flag(app, "--dry-run", arguments.dry_run,
+             "Print without a board, in real time: lines lead nowhere, heaters are models");
+    add_file(app, "--socket", arguments.socket,
+             "Where lyrctl reaches the print  [/run/lyr/NAME.sock]");
     add_file(app, "--faults", arguments.faults_path,
              "Break heaters and sensors of the simulation: one TIME_S FAULT HEATER a line; -: "
              "standard input");
@@ -167,13 +176,21 @@ Status simulate(const Arguments& arguments, const config::Printer& printer) {
 
 Status print(const Arguments& arguments, const config::Printer& printer) {
     ProgressLine line;
-    const run::PrintJob job{arguments.lyr_path, printer, arguments.no_heat, shown_on(line)};
-    const Result<run::PrintReport> report = run::print(job);
+    run::PrintControl control;
+    run::PrintStatus before;
+    before.file = arguments.lyr_path;
+    control.publish(before);
+    Result<PrintServer> server = PrintServer::open(arguments.socket, printer, control);
+    if (!server) return server.error();
+    run::PrintJob job{arguments.lyr_path, printer, arguments.no_heat, shown_on(line)};
+    job.control = &control;
+    job.begun = [&] { show(program, server->start()); };
+    const Result<run::PrintReport> report = arguments.dry_run ? run::dry_run(job) : run::print(job);
     line.clear();
     if (!report) return report.error();
     show(program, report->warnings);
-    return tell(arguments.lyr_path + " printed on \"" + printer.name + "\"\n" +
-                run::text_of(*report));
+    return tell(arguments.lyr_path + (arguments.dry_run ? " tried on \"" : " printed on \"") +
+                printer.name + "\"\n" + run::text_of(*report));
 }
 
 // What makes no sense together.
@@ -187,6 +204,8 @@ Status check_together(const Arguments& arguments) {
     }
     if (!arguments.simulate && !arguments.faults_path.empty())
         return usage("--faults needs --simulate");
+    if ((arguments.dry_run || !arguments.socket.empty()) && (arguments.simulate || arguments.tune))
+        return usage("--dry-run and --socket go with a print, not with --simulate or --tune");
     if (arguments.no_heat && !arguments.faults_path.empty())
         return usage("--faults has nothing to break with --no-heat");
     if (arguments.printer_path == "-" && arguments.faults_path == "-")
@@ -199,7 +218,7 @@ Status work(const Arguments& arguments) {
     // The whole file is checked before the first motion, and then read again.
     if (arguments.lyr_path == "-")
         return usage("a print is read more than once: give a file, not standard input");
-    if (!arguments.simulate && arguments.printer_path.empty())
+    if (!arguments.simulate && !arguments.dry_run && arguments.printer_path.empty())
         return usage("to print or tune, --printer FILE must say what the machine is");
     if (!arguments.simulate && (!arguments.trace_path.empty() || arguments.json))
         return usage("--trace and --json need --simulate");
