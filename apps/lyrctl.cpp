@@ -6,13 +6,12 @@
 
 #include "apps/command_line.h"
 #include "apps/files.h"
+#include "apps/page.h"
 #include "apps/signal_watch.h"
 #include "base/nearest_name.h"
 #include "base/text.h"
 #include "target/control/link.h"
 #include "target/control/places.h"
-#include "target/control/web/token.h"
-#include "target/control/web/web_page.h"
 
 namespace {
 
@@ -180,32 +179,20 @@ Status watch(control::Link& link, const Arguments& arguments) {
     }
 }
 
-Status serve_page(const Arguments& arguments) {
-    constexpr std::chrono::milliseconds longest_wait{250};
+Result<PageOptions> page_of(const Arguments& arguments) {
     const auto& words = arguments.words;
     const std::optional<double> port = words.size() == 2 ? finite_number(words[1]) : std::nullopt;
     if (!port || *port < 0 || *port > 65535 || *port != std::floor(*port))
         return usage("web: expected a port, 1 to 65535, or 0 for one that is free");
     if (arguments.json || arguments.watch) return usage("--json and --watch go with status");
-    // It waits for the print if there is none yet.
-    const std::string socket = arguments.socket;
-    const bool is_new = arguments.token_path.empty();
-    Result<std::string> token =
-        is_new ? control::random_token() : control::token_in(arguments.token_path);
-    if (!token) return token.error();
-    control::Relay relay(socket);
-    const SignalWatch signals(program.name);
-    Result<control::WebPage> page =
-        control::WebPage::open({static_cast<std::uint16_t>(*port), *token}, relay);
-    if (!page) return page.error();
-    // What stands behind # stays in the browser.
-    if (Status told = tell(page->address() + (is_new ? "#token=" + *token : "") + '\n'); !told)
-        return told;
-    for (;;) page->serve(longest_wait);
+    return PageOptions{static_cast<std::uint16_t>(*port), arguments.socket, arguments.token_path};
 }
 
 Status work(const Arguments& arguments) {
-    if (!arguments.words.empty() && arguments.words[0] == "web") return serve_page(arguments);
+    if (!arguments.words.empty() && arguments.words[0] == "web") {
+        const Result<PageOptions> page = page_of(arguments);
+        return page ? serve_page(program, *page) : page.error();
+    }
     const Result<std::string> request = request_of(arguments);
     if (!request) return request.error();
     const Result<std::string> socket = find_socket(arguments);

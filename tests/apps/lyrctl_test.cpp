@@ -110,6 +110,9 @@ TEST_CASE("lyrctl: what is wrong comes as one line and with its status") {
     for (const char* bad :
          {"tool", "tool=", "tool=hot", "tool=50%", "fan=1", "fan=%", "speed=nan%"})
         check_failure(scene.lyrctl(std::string("set ") + bad), 2, "expected");
+    for (const char* port : {"", "http", "-1", "65536", "80.5", "80 81"})
+        check_failure(scene.lyrctl(std::string("web ") + port), 2, "web: expected a port");
+    check_failure(scene.lyrctl("pause --token token"), 2, "--token goes with web");
     check_failure(scene.lyrctl("resume"), 7, "cannot resume: the print is printing");
     check_failure(scene.lyrctl("set tool=400"), 7, "goes up to 270");
     check_failure(scene.lyrctl("set speed=900%"), 7, "speed must be a number from 0.1 to 3");
@@ -153,30 +156,4 @@ TEST_CASE("lyrctl: --watch goes on until the print is over and ends as it did") 
                            scene.folder / "err");
     CHECK(watching.wait_for([&] { return watching.blocks(SIGINT); }));
     CHECK(watching.end(SIGINT) == 8);
-}
-
-TEST_CASE(
-    "lyrctl: web tells its address with a token, or the token is in a file, and ends on request") {
-    const Scene scene("lyrctl-web");
-    const auto told = [&](const std::string& more) {
-        // Its output goes to a file, since it does not end by itself.
-        fs::remove(scene.folder / "out");
-        const Ended ended =
-            scene.lyrctl("web 0 --socket lyr/a.sock " + more +
-                         " >out & while [ ! -s out ]; do sleep 0.02; done; kill $!; "
-                         "wait $!");
-        CHECK(ended.status == 8);
-        return text_of(scene.folder / "out");
-    };
-    CHECK(told("").starts_with("http://127.0.0.1:"));
-    CHECK(told("").find("/#token=") != std::string::npos);
-    const std::string kept = told("--token token");
-    CHECK(kept.ends_with("/\n"));
-    CHECK(text_of(scene.folder / "token").size() == 33);
-    for (const char* port : {"", "http", "-1", "65536", "80.5", "80 81"})
-        check_failure(scene.lyrctl(std::string("web ") + port), 2, "web: expected a port");
-    check_failure(scene.lyrctl("pause --token token"), 2, "--token goes with web");
-    check_failure(scene.lyrctl("web 0 --token lyr"), 3, "must be in a file");
-    scene.folder.write("open", "0123456789abcdef");
-    check_failure(scene.folder.run("chmod 644 open; lyrctl web 0 --token open"), 3, "chmod 600");
 }

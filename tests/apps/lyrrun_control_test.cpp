@@ -89,6 +89,17 @@ TEST_CASE("lyrctl: pauses, resumes, slows down and cancels a print") {
     CHECK_FALSE(fs::exists(scene.folder / "s"));
 }
 
+#ifndef __SANITIZE_ADDRESS__
+TEST_CASE("lyrrun: a print takes little memory (the locked stacks of its threads had 32 MB)") {
+    const Scene scene("lyrrun-memory");
+    CHECK(scene.becomes("printing"));
+    const long resident_kb = scene.print.resident_kb();
+    CHECK(resident_kb > 0);
+    CHECK(resident_kb < 20'000);
+    CHECK(scene.print.end(SIGTERM) == 8);
+}
+#endif
+
 TEST_CASE("lyrctl: an emergency stop ends the print at once") {
     const Scene scene("lyrrun-emergency");
     CHECK(scene.becomes("printing"));

@@ -24,6 +24,9 @@ namespace {
 constexpr unsigned connection_timeout_s = 20;
 constexpr std::size_t connection_memory_bytes = std::size_t{1} << 15;
 
+// What a .lyr file begins with.
+constexpr std::string_view print_magic = "LYR\x1a";
+
 // The page is one file that asks nothing of anybody else.
 constexpr const char* policy =
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:; "
@@ -251,7 +254,13 @@ MHD_Result WebPage::Work::send_status(MHD_Connection* connection) const {
 MHD_Result WebPage::Work::send_print(MHD_Connection* connection) const {
     const int file = ::open(relay_.file().c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     struct stat found {};
-    if (file < 0 || ::fstat(file, &found) != 0 || !S_ISREG(found.st_mode)) {
+    // Nothing else is handed out, whatever a socket's server says it prints.
+    std::array<char, print_magic.size()> magic{};
+    const bool is_print =
+        file >= 0 && ::fstat(file, &found) == 0 && S_ISREG(found.st_mode) &&
+        ::pread(file, magic.data(), magic.size(), 0) == static_cast<ssize_t>(magic.size()) &&
+        std::string_view(magic.data(), magic.size()) == print_magic;
+    if (!is_print) {
         if (file >= 0) ::close(file);
         return refuse(connection, MHD_HTTP_NOT_FOUND, ErrorCode::bad_request,
                       "the print cannot be read");

@@ -73,8 +73,9 @@ TEST_CASE("dispatcher 1: an accepted command is on its way to the print, in its 
     for (std::size_t i = 0; i < run::PrintControl::most_waiting; ++i)
         REQUIRE(scene.code(R"({"command":"set","fan":0.5})") == "ok");
     CHECK(scene.code(R"({"command":"set","fan":0.5})") == "busy");
-    CHECK(scene.code(R"({"command":"stop"})") == "ok");
+    for (int i = 0; i < 1000; ++i) REQUIRE(scene.code(R"({"command":"stop"})") == "ok");
     CHECK(scene.print.take() == run::Command(run::EmergencyStop{}));
+    CHECK(scene.print.take() == run::Command(run::SetFan{0.5}));
 }
 
 TEST_CASE("dispatcher 2: what cannot be done is refused and nothing of it is done") {

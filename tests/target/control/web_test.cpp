@@ -98,7 +98,7 @@ struct Scene {
     std::thread serving;
 
     Scene() {
-        std::ofstream(file, std::ios::binary) << std::string("\0\1\2LYR", 6);
+        std::ofstream(file, std::ios::binary) << std::string("LYR\x1a\0\1", 6);
         run::PrintStatus status;
         status.state = run::PrintState::printing;
         status.file = file;
@@ -186,7 +186,9 @@ TEST_CASE("web page: gives the page, the status and the print") {
               .empty());
     const Answered print = scene.ask("GET /print.lyr");
     CHECK(print.status == 200);
-    CHECK(print.body == std::string("\0\1\2LYR", 6));
+    CHECK(print.body == std::string("LYR\x1a\0\1", 6));
+    std::ofstream(scene.file, std::ios::binary) << "secret: 1234";
+    CHECK(scene.ask("GET /print.lyr").status == 404);
     CHECK(scene.ask("GET /etc/passwd").status == 404);
     CHECK(scene.ask("GET /../../etc/passwd").status == 404);
     CHECK(scene.ask("DELETE /").status == 405);
