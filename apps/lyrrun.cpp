@@ -14,6 +14,7 @@
 #include "base/text.h"
 #include "target/run/dry_run.h"
 #include "target/run/print.h"
+#include "target/run/resumption.h"
 #include "target/run/simulate.h"
 #include "target/run/tune.h"
 
@@ -23,13 +24,14 @@ using namespace lyr;
 using namespace lyr::command_line;
 
 struct Arguments {
-    std::string lyr_path, printer_path, trace_path, faults_path;
+    std::string lyr_path, printer_path, trace_path, faults_path, script_path;
     struct Tune {
         std::size_t heater = 0;
         double target_c = 0;
     };
     std::optional<Tune> tune;
-    bool simulate = false, json = false, no_heat = false, dry_run = false;
+    bool simulate = false, json = false, no_heat = false, resume = false, resumable = false;
+    bool dry_run = false;
     std::string socket;
 };
 
@@ -46,6 +48,10 @@ constexpr Program program{
     "  lyrrun part.lyr --dry-run                          try that without a board, in real time\n"
     "  lyrrun --printer printer.toml --tune tool=210      find a heater's kp, ki and kd\n"
     "  lyrrun part.lyr --simulate --faults faults.txt     see what the guards do about faults\n"
+    "  lyrrun part.lyr --simulate --script script.txt     pause, go on, cancel: "
+    "docs/print-life.md\n"
+    "  lyrrun part.lyr --printer printer.toml --resumable what a loss of power left\n"
+    "  lyrrun part.lyr --printer printer.toml --resume    go on at the layer that was cut off\n"
     "\n"
     "A print takes the whole path from the file and starts with the head at start_mm of the\n"
     "printer. Ctrl-C brings the head to rest on its path and releases all lines; a second\n"
@@ -88,6 +94,13 @@ void add_options(CLI::App& app, Arguments& arguments) {
     add_file(app, "--faults", arguments.faults_path,
              "Break heaters and sensors of the simulation: one TIME_S FAULT HEATER a line; -: "
              "standard input");
+    add_file(app, "--script", arguments.script_path,
+             "Ask things of the simulated print: one TIME_S COMMAND a line; -: standard input");
+    add_flag(
+        app, "--resume", arguments.resume,
+        "Go on at the layer in which the print was cut off; the head is at start_mm in x and y");
+    add_flag(app, "--resumable", arguments.resumable,
+             "Tell what --resume would go on with, and do nothing");
     add_text(
         app, "--tune", "HEATER=C",
         [&arguments](const std::string& value) -> std::optional<std::string> {
@@ -128,6 +141,31 @@ Result<std::vector<thermal::Fault>> read_faults(const Arguments& arguments,
     return thermal::parse_faults(*text, path == "-" ? standard_input_name : path, printer);
 }
 
+// None without --script.
+Result<std::vector<run::TimedCommand>> read_script(const Arguments& arguments) {
+    constexpr std::size_t most_bytes = std::size_t{1} << 20;
+    const std::string& path = arguments.script_path;
+    if (path.empty()) return std::vector<run::TimedCommand>();
+    const Result<std::string> text = read_text(path, most_bytes);
+    if (!text) return text.error();
+    return run::parse_script(*text, path == "-" ? standard_input_name : path);
+}
+
+// None without --resume.
+Result<std::optional<run::Resumption>> resumption_of(const Arguments& arguments,
+                                                     const config::Printer& printer) {
+    if (!arguments.resume) return std::optional<run::Resumption>();
+    Result<run::Resumption> found = run::find_resumption(printer, arguments.lyr_path);
+    if (!found) return found.error();
+    return std::optional(std::move(*found));
+}
+
+Status tell_resumable(const Arguments& arguments, const config::Printer& printer) {
+    const Result<run::Resumption> found = run::find_resumption(printer, arguments.lyr_path);
+    if (!found) return found.error();
+    return tell(run::text_of(*found, arguments.lyr_path));
+}
+
 Status tune(const Arguments& arguments, const config::Printer& printer) {
     Result<std::vector<thermal::Fault>> faults = read_faults(arguments, printer);
     if (!faults) return faults.error();
@@ -155,10 +193,16 @@ Status simulate(const Arguments& arguments, const config::Printer& printer) {
     const SignalWatch watch(program.name);
     Result<std::vector<thermal::Fault>> faults = read_faults(arguments, printer);
     if (!faults) return faults.error();
+    Result<std::vector<run::TimedCommand>> script = read_script(arguments);
+    if (!script) return script.error();
+    Result<std::optional<run::Resumption>> resumption = resumption_of(arguments, printer);
+    if (!resumption) return resumption.error();
     ProgressLine line;
     run::SimulationJob job{arguments.lyr_path, printer, {}, shown_on(line), {}};
     job.no_heat = arguments.no_heat;
     job.faults = std::move(*faults);
+    job.script = std::move(*script);
+    job.resumption = std::move(*resumption);
     if (!arguments.trace_path.empty()) job.trace = arguments.trace_path;
     const Result<run::SimulationReport> report = run::simulate(job);
     line.clear();
@@ -175,6 +219,8 @@ Status simulate(const Arguments& arguments, const config::Printer& printer) {
 }
 
 Status print(const Arguments& arguments, const config::Printer& printer) {
+    Result<std::optional<run::Resumption>> resumption = resumption_of(arguments, printer);
+    if (!resumption) return resumption.error();
     ProgressLine line;
     run::PrintControl control;
     run::PrintStatus before;
@@ -183,6 +229,8 @@ Status print(const Arguments& arguments, const config::Printer& printer) {
     Result<PrintServer> server = PrintServer::open(arguments.socket, printer, control);
     if (!server) return server.error();
     run::PrintJob job{arguments.lyr_path, printer, arguments.no_heat, shown_on(line)};
+    if (!arguments.dry_run) job.journal = run::journal_path(printer, arguments.lyr_path);
+    job.resumption = std::move(*resumption);
     job.control = &control;
     job.begun = [&] { show(program, server->start()); };
     const Result<run::PrintReport> report = arguments.dry_run ? run::dry_run(job) : run::print(job);
@@ -197,8 +245,10 @@ Status print(const Arguments& arguments, const config::Printer& printer) {
 Status check_together(const Arguments& arguments) {
     if (arguments.tune) {
         if (!arguments.lyr_path.empty() || !arguments.trace_path.empty() || arguments.json ||
-            arguments.no_heat)
-            return usage("--tune goes without a print, --trace, --json and --no-heat");
+            arguments.no_heat || !arguments.script_path.empty() || arguments.resume ||
+            arguments.resumable)
+            return usage(
+                "--tune goes without a print, --trace, --json, --no-heat, --script and --resume");
     } else if (arguments.lyr_path.empty()) {
         return usage("print is required, the .lyr file that stepc wrote, or --tune");
     }
@@ -206,10 +256,16 @@ Status check_together(const Arguments& arguments) {
         return usage("--faults needs --simulate");
     if ((arguments.dry_run || !arguments.socket.empty()) && (arguments.simulate || arguments.tune))
         return usage("--dry-run and --socket go with a print, not with --simulate or --tune");
+    if (!arguments.simulate && !arguments.script_path.empty())
+        return usage("--script needs --simulate");
+    if (arguments.resume && arguments.resumable)
+        return usage("--resumable tells what --resume would do: give one of them");
     if (arguments.no_heat && !arguments.faults_path.empty())
         return usage("--faults has nothing to break with --no-heat");
-    if (arguments.printer_path == "-" && arguments.faults_path == "-")
-        return usage("only one of --printer and --faults can be standard input");
+    const int inputs = (arguments.printer_path == "-") + (arguments.faults_path == "-") +
+                       (arguments.script_path == "-");
+    if (inputs > 1)
+        return usage("only one of --printer, --faults and --script can be standard input");
     return Done{};
 }
 
@@ -224,13 +280,15 @@ Status work(const Arguments& arguments) {
         return usage("--trace and --json need --simulate");
     if (const Status apart = check_apart({{"the print", arguments.lyr_path},
                                           {"the printer's file", arguments.printer_path},
-                                          {"the faults", arguments.faults_path}},
+                                          {"the faults", arguments.faults_path},
+                                          {"the script", arguments.script_path}},
                                          {{"the trace", arguments.trace_path}});
         !apart)
         return apart;
     const Result<config::Printer> printer = read_printer(arguments.printer_path);
     if (!printer) return printer.error();
     if (arguments.tune) return tune(arguments, *printer);
+    if (arguments.resumable) return tell_resumable(arguments, *printer);
     return arguments.simulate ? simulate(arguments, *printer) : print(arguments, *printer);
 }
 

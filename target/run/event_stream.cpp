@@ -5,8 +5,10 @@
 namespace lyr::run {
 
 Result<EventStream> EventStream::open(const std::string& path, const config::Printer& printer,
-                                      double filament_diameter_mm, OrderQueue* orders) {
-    Result<StepStream> steps = StepStream::open(path, printer, filament_diameter_mm, orders);
+                                      double filament_diameter_mm, OrderQueue* orders,
+                                      std::uint32_t first_layer) {
+    Result<StepStream> steps =
+        StepStream::open(path, printer, filament_diameter_mm, orders, first_layer);
     if (!steps) return steps.error();
     return EventStream(std::move(*steps),
                        PulseSchedule(printer.pulse, line_layout(printer).enable));

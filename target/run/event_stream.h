@@ -22,7 +22,8 @@ public:
     static constexpr std::int64_t driver_wake_ns = 5'000'000;
 
     static Result<EventStream> open(const std::string& path, const config::Printer& printer,
-                                    double filament_diameter_mm, OrderQueue* orders = nullptr);
+                                    double filament_diameter_mm, OrderQueue* orders = nullptr,
+                                    std::uint32_t first_layer = 0);
 
     // Appends the next events; false: these were the last.
     Result<bool> next(std::vector<LineEvent>& events);

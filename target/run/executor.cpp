@@ -94,9 +94,7 @@ void Executor::start(const LineEvent& event) {
     last_begin_ns_ = last_end_ns_ = clock_.now_ns();
     if (!on_trip_ && started_) return;
     last_event_ns_ = event.time_ns;
-    if (on_trip_) return;
-    started_ = true;
-    base_ns_ = last_begin_ns_ - event.time_ns;
+    started_ = started_ || !on_trip_;
 }
 
 double Executor::target_pace() const {
@@ -156,7 +154,7 @@ Status Executor::write(const LineEvent& event, std::int64_t begin_ns) {
     const gpio::LineMask toggled = levels_ ^ event.levels;
     const gpio::LineMask lines = toggled & ~all_mark_bits;
     const bool only_marks = toggled != 0 && lines == 0;
-    if (!on_trip_) behind_ns_ = begin_ns - base_ns_ - event.time_ns;
+    if (!on_trip_) behind_ns_ = begin_ns - event.time_ns;
     Status written = only_marks ? Done{} : chip_.write(lines, event.levels);
     last_begin_ns_ = begin_ns;
     last_end_ns_ = clock_.now_ns();

@@ -86,8 +86,8 @@ public:
     std::uint64_t writes() const { return writes_; }
     // Spent at gates.
     std::int64_t waited_ns() const { return waited_ns_; }
-    // How much later than without any wait, rest and braking the event was written that was written last, or is being
-    // written.
+    // What the clock showed, less the time of the event itself, when the path's last one was written, or is being written:
+    // waits, rests and braking make it grow.
     std::int64_t behind_ns() const { return behind_ns_; }
 
     bool started() const { return started_; }
@@ -132,7 +132,7 @@ private:
     bool at_gate_ = false;  // reached, and not passed yet
     std::int64_t waited_ns_ = 0;
     std::int64_t path_ns_ = 0;  // time() of the path while on a trip
-    std::int64_t base_ns_ = 0, behind_ns_ = 0;
+    std::int64_t behind_ns_ = 0;
     StepPositions positions_{}, trip_steps_{};
 };
 

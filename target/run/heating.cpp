@@ -106,13 +106,14 @@ double heat_time_s() {
 }
 
 void tend(thermal::HeatControl& control, HeatAttendant& attendant,
-          const std::atomic<bool>& finished,
+          const std::atomic<bool>& finished, std::atomic<std::uint32_t>& ticks,
           const std::function<void(const thermal::Trip&)>& tripped) {
     bool told = false;
     Clock::time_point next = Clock::now();
     while (!finished.load()) {
         control.tick(heat_time_s());
         attendant.tick();
+        ++ticks;
         if (control.trip() && !told) tripped(*control.trip());
         told = control.trip().has_value();
         next = std::max(next + std::chrono::duration_cast<Clock::duration>(tick), Clock::now());

@@ -5,7 +5,7 @@
 //     nothing is held.
 //     Lines are held by a process of their own (line_keeper.h), so that a crash leaves no heater on; it must be called
 //     before any thread is started.
-//  2. tend() ticks until `finished`, on its own thread; a tick that takes long makes no others hurry.
+//  2. tend() ticks until `finished`, on its own thread, and counts the ticks; a tick that takes long makes no others hurry.
 //  3. The first guard that fires is told once, through `tripped`, from whichever thread finds it.
 
 #pragma once
@@ -34,7 +34,7 @@ Result<Heating> open_heating(const config::Printer& printer);
 double heat_time_s();
 
 void tend(thermal::HeatControl& control, HeatAttendant& attendant,
-          const std::atomic<bool>& finished,
+          const std::atomic<bool>& finished, std::atomic<std::uint32_t>& ticks,
           const std::function<void(const thermal::Trip&)>& tripped);
 
 Diagnostic diagnostic_of(const thermal::Trip& trip);

@@ -68,8 +68,12 @@ Status check_range(const Box& box, const PathCurve& curve, const std::string& pa
 
 }  // namespace
 
-Result<format::Reader> open_file(const std::string& path) {
-    return format::Reader::open(path, {.keep_thumbnails = false, .keep_configuration = false});
+Result<format::Reader> open_file(const std::string& path, std::uint32_t first_layer) {
+    Result<format::Reader> reader =
+        format::Reader::open(path, {.keep_thumbnails = false, .keep_configuration = false});
+    if (!reader || first_layer == 0) return reader;
+    if (const Status found = reader->seek_layer(first_layer); !found) return found.error();
+    return reader;
 }
 
 Result<Inspection> inspect(const std::string& path, const config::Printer& printer) {

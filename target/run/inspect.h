@@ -25,7 +25,7 @@ struct Inspection {
 };
 
 // What every pass over the file opens it with: nothing is kept that a printer does not need.
-Result<format::Reader> open_file(const std::string& path);
+Result<format::Reader> open_file(const std::string& path, std::uint32_t first_layer = 0);
 
 Result<Inspection> inspect(const std::string& path, const config::Printer& printer);
 

@@ -3,6 +3,7 @@
 #include "target/run/life.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/text.h"
 #include "target/run/demands.h"
@@ -51,6 +52,7 @@ void Life::tick(double now_s) {
     if (!begun_s_) begun_s_ = now_s;
     now_s_ = now_s;
     layer_ = std::max(layer_, layers_.at(course_.time_ns.load(std::memory_order_acquire)));
+    note();
     while (const std::optional<Command> command = control_.take()) serve(*command);
     if (const auto pause = desk_.now().pause; pause && phase_ == Phase::printing) {
         if (*pause == format::PauseReason::filament_change)
@@ -104,6 +106,11 @@ void Life::rest_for(Command reason) {
     rests_again_ = phase_ == Phase::returning;
     reason_ = reason;
     message_.clear();
+    if (cancels()) {
+        // What is left to do needs no heat but that which is there.
+        standby_.fill(true);
+        desk_.set_standby(standby_);
+    }
     if (phase_ == Phase::resting && unloads) unload();
     if (phase_ != Phase::printing) return;
     course_.wanted_pace.store(0);
@@ -167,7 +174,7 @@ void Life::make(std::span<const Leg> legs, const motion::Point& from) {
 
 void Life::park() {
     phase_ = Phase::parking;
-    left_at_ = parked_at_ = head_at(printer_, course_.steps());
+    left_at_ = parked_at_ = head();
     // Before the first motion there is nothing to come away from.
     if (!course_.started.load()) return;
     const config::PauseSettings& pause = printer_.pause;
@@ -206,9 +213,69 @@ void Life::rest() {
     desk_.set_standby(standby_);
 }
 
+motion::Point Life::head() const {
+    StepPositions steps = course_.steps();
+    for (std::size_t i = 0; i < steps.size(); ++i) steps[i] -= lifted_steps_[i];
+    return head_at(printer_, steps);
+}
+
+void Life::keep_journal(JournalWriter* journal, const FileIdentity& identity) {
+    journal_ = journal;
+    noted_ = {identity, layer_, print_.layers, 0, {}};
+    // What an earlier print left there must not be resumed any more.
+    if (journal_) journal_->post(noted_);
+}
+
+void Life::begin_with(const Resumption& resumption, bool is_lifted) {
+    for (const format::HeaterTarget& target : resumption.state.temperatures)
+        if (const auto heater = heater_number(target.heater))
+            desk_.set_target(*heater, target.target_c);
+    layer_ = resumption.first_layer + 1;
+    if (!is_lifted) lift_from_mm_ = resumption.stopped_z_mm;
+    course_.wanted_pace.store(0);
+    phase_ = Phase::heating;
+}
+
+// Before the path: the drivers are switched on by it.
+void Life::lift() {
+    motion::Point from{printer_.start_mm[0], printer_.start_mm[1], *lift_from_mm_};
+    lift_from_mm_.reset();
+    const Leg leg{{from.x, from.y, printer_.start_mm[2]}, 0, printer_.pause.speed_mm_s};
+    course_.levels.store(line_layout(printer_).enable);
+    make(std::span(&leg, 1), from);
+}
+
+void Life::note() {
+    if (!journal_) return;
+    if (const auto error = journal_->take_error()) {
+        journal_error_ = error;
+        message_ = error->message;
+    }
+    JournalEntry entry = noted_;
+    entry.layer = layer_;
+    entry.parked_nm.reset();
+    constexpr double nm_per_mm = 1e6;
+    // A height that is too low prints in the air; one that is too high would drive the nozzle into the part. So it is
+    // parked from when it has arrived to well before it leaves.
+    if (phase_ == Phase::resting) entry.parked_nm = std::llround(parked_at_.z * nm_per_mm);
+    if (entry == noted_) return;
+    noted_ = entry;
+    noted_.time_ns = course_.time_ns.load();
+    journal_->post(noted_);
+}
+
+void Life::press(std::size_t input) {
+    const bool goes_on = phase_ == Phase::resting && input == config::input_pause;
+    const std::array<Command, config::input_count> meant{
+        goes_on ? Command(Resume{}) : Command(Pause{}), Cancel{}, EmergencyStop{},
+        ChangeFilament{}};
+    (void)control_.post(meant[input]);
+}
+
 void Life::go_back() {
     if (cancels()) return parked();
     phase_ = Phase::returning;
+    if (lift_from_mm_) return lift();
     if (!course_.started.load()) return;
     const double filament_mm_s = printer_.axes[config::axis_e].max_speed_mm_s;
     const config::FilamentSettings& filament = printer_.filament;
@@ -225,6 +292,7 @@ void Life::go_back() {
 
 void Life::returned() {
     is_unloaded_ = false;
+    if (!course_.started.load()) lifted_steps_ = course_.steps();
     if (cancels() || rests_again_) {
         rests_again_ = false;
         return park();
@@ -256,8 +324,7 @@ PrintState Life::state() const {
 
 void Life::publish(PrintState state, bool is_position_known) {
     constexpr double ns_per_s = 1e9;
-    const StepPositions steps = course_.steps();
-    const motion::Point head = head_at(printer_, steps);
+    const motion::Point head = this->head();
     const HeatNow heat = desk_.now();
     PrintStatus status;
     status.state = state;

@@ -10,9 +10,13 @@
 //     purges, and the path goes on with the event at which it was left.
 //  2. Filament is moved only if the tool has min_extrude_c, before a resume it is heated and waited for.
 //  3. A pause that lasts for longer than printer.toml says lets tool, bed and chamber go cold.
-//  4. A cancel parks too, and ends by a request to stop; an emergency stop does so at once, and calls `cut`.
+//  4. A cancel takes all heat away, parks too, and ends by a request to stop; an emergency stop does so at once, and calls
+//     `cut`.
 //  5. What cannot be done as things are is refused, and status().message says why.
 //  6. Commands take effect within the next tick.
+//  7. With a journal, each layer is noted there when the head begins it, and where the head is parked; a journal that
+//     cannot be written is told, and is no reason to stop.
+//  8. A print that resumes after it was cut off begins with heat, then the head is lifted, unless that was done.
 
 #pragma once
 
@@ -21,7 +25,9 @@
 
 #include "target/run/course.h"
 #include "target/run/heat_desk.h"
+#include "target/run/journal.h"
 #include "target/run/print_control.h"
+#include "target/run/resumption.h"
 #include "target/run/trip.h"
 
 namespace lyr::run {
@@ -45,15 +51,23 @@ public:
 
     // Takes heat away at once, from any thread.
     std::function<void()> cut;
+    // Both may be none. `identity` is that of the file.
+    void keep_journal(JournalWriter* journal, const FileIdentity& identity);
+    // Before the first tick; the printer's start is where the head is after the lift.
+    void begin_with(const Resumption& resumption, bool is_lifted);
 
     void tick(double now_s);
+    // A button or sensor of the printer; of config's InputNumber.
+    void press(std::size_t input);
     // What the print came to; the last status.
     void end(const Status& result, bool is_position_known);
 
     std::uint32_t layer() const { return layer_; }
     // From leaving the path to being back.
     double paused_s() const { return paused_s_; }
+    const std::optional<Diagnostic>& journal_error() const { return journal_error_; }
     bool rests() const { return phase_ == Phase::resting; }
+    bool is_cancelled() const { return ended_by_ && cancels(); }
     // Ended by command: what to say.
     const std::optional<std::string>& ended_by() const { return ended_by_; }
 
@@ -77,6 +91,9 @@ private:
     void parked();
     void rest();
     void go_back();
+    void lift();
+    void note();
+    motion::Point head() const;
     void returned();
     void unload();
     void make(std::span<const Leg> legs, const motion::Point& from);
@@ -107,6 +124,11 @@ private:
     bool rests_again_ = false;  // as soon as it has returned
     std::array<bool, config::heater_count> standby_{};
     std::uint32_t layer_ = 0;
+    JournalWriter* journal_ = nullptr;
+    JournalEntry noted_;
+    std::optional<Diagnostic> journal_error_;
+    std::optional<double> lift_from_mm_;  // a height: before the path begins
+    StepPositions lifted_steps_{};        // by that lift
     std::string message_;
     std::optional<std::string> ended_by_;
 };

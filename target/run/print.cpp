@@ -13,6 +13,7 @@
 
 #include "base/text.h"
 #include "target/gpio/gpiod_chip.h"
+#include "target/gpio/gpiod_inputs.h"
 #include "target/run/demands.h"
 #include "target/run/event_ring.h"
 #include "target/run/event_stream.h"
@@ -20,6 +21,7 @@
 #include "target/run/life.h"
 #include "target/run/real_time.h"
 #include "target/run/stop_signals.h"
+#include "target/run/watchdog.h"
 
 namespace lyr::run {
 namespace {
@@ -48,6 +50,7 @@ struct Shared {
     HeatDesk desk;
     std::atomic<bool> filled{false};    // the ring is full, or all of the print is in it
     std::atomic<bool> finished{false};  // the real-time thread has ended
+    std::atomic<std::uint32_t> heat_ticks{0};
     OrderQueue orders;
     Marks marks;
 
@@ -129,9 +132,53 @@ private:
     double next_s_ = 0;
 };
 
+// Feeds the board's watchdog and the init system's once a second, while the heaters are tended.
+class Supervision {
+public:
+    explicit Supervision(std::optional<Watchdog> watchdog) : watchdog_(std::move(watchdog)) {
+        notify("READY=1");
+    }
+    void feed(double now_s, const Shared& shared, bool heats, const std::string& text) {
+        if (now_s < next_s_) return;
+        next_s_ = now_s + 1;
+        const std::uint32_t ticks = shared.heat_ticks.load();
+        if (heats && ticks == seen_ticks_) return;
+        seen_ticks_ = ticks;
+        if (watchdog_) watchdog_->feed();
+        notify("WATCHDOG=1\nSTATUS=" + text);
+    }
+
+private:
+    std::optional<Watchdog> watchdog_;
+    double next_s_ = 0;
+    std::uint32_t seen_ticks_ = 0;
+};
+
+void press(Buttons& buttons, std::int64_t now_ns, Life& life, Shared& shared) {
+    const Result<std::vector<std::size_t>> pressed = buttons.pressed(now_ns);
+    if (!pressed) return shared.tripped({thermal::GuardKind::silent, pressed.error().message});
+    for (const std::size_t input : *pressed) life.press(input);
+}
+
+std::string status_text(const PrintStatus& status) {
+    const auto state = static_cast<std::size_t>(status.state);
+    return std::string(print_state_names[state]) +
+           formatted(", layer %u of %u", status.layer, status.layers);
+}
+
+// What the first thread looks after.
+struct Watched {
+    const StopSignals& signals;
+    Shared& shared;
+    Life& life;
+    Heating* heating;
+    Buttons* buttons;
+    Supervision& supervision;
+};
+
 // Until the real-time thread has ended.
-void watch(const StopSignals& signals, Shared& shared, const PrintJob& job,
-           const Inspection& inspection, Life& life, Heating* heating) {
+void watch(const Watched& watched, const PrintJob& job, const Inspection& inspection) {
+    auto& [signals, shared, life, heating, buttons, supervision] = watched;
     IdleTending idle(shared);
     double next_progress_s = heat_time_s() + progress_s;
     while (!shared.finished.load()) {
@@ -140,7 +187,10 @@ void watch(const StopSignals& signals, Shared& shared, const PrintJob& job,
         if (heating)
             if (const auto silent = heating->stage->expire(now_s)) shared.tripped(*silent);
         if (!heating) idle.tick(now_s);
+        if (buttons) press(*buttons, gpio::MonotonicClock().now_ns(), life, shared);
+        if (heating && shared.trip()) (void)heating->stage->all_off();
         life.tick(now_s);
+        supervision.feed(now_s, shared, heating, status_text(shared.control.status()));
         if (!job.progress || now_s < next_progress_s) continue;
         next_progress_s = now_s + progress_s;
         job.progress({life.layer(), inspection.totals.layers,
@@ -194,7 +244,7 @@ public:
         if (!heating) return;
         attendant_.emplace(shared.orders, shared.marks, heating->control.get(), &shared.desk);
         thread_ = std::thread([this, heating, &shared] {
-            tend(*heating->control, *attendant_, shared.finished,
+            tend(*heating->control, *attendant_, shared.finished, shared.heat_ticks,
                  [&](const thermal::Trip& trip) { shared.tripped(trip); });
             (void)heating->stage->release();
         });
@@ -230,61 +280,128 @@ void report_on(const Executor& executor, const gpio::TracingClock& clock, PrintR
     report.lateness = clock.histogram();
 }
 
-Result<PrintReport> run(const PrintJob& job, const Prepared& prepared, gpio::GpioChip& chip,
-                        gpio::Clock& clock, Heating* heating) {
+// None: no journal is asked for, or cannot have one, which is a warning.
+std::unique_ptr<JournalWriter> journal_for(const PrintJob& job, FileIdentity& identity,
+                                           Diagnostics& warnings) {
+    if (job.journal.empty()) return nullptr;
+    const Result<FileIdentity> file = identity_of(job.file);
+    Result<Journal> journal = Journal::open(job.journal);
+    if (file && journal) {
+        identity = *file;
+        return std::make_unique<JournalWriter>(std::move(*journal));
+    }
+    warnings.push_back(file ? journal.error() : file.error());
+    warnings.back().severity = Severity::warning;
+    warnings.back().message += "; this print cannot be resumed after a loss of power";
+    return nullptr;
+}
+
+// All that a print has beside its job, until its threads have ended.
+struct Running {
+    Running(const PrintJob& job, const Inspection& inspection, gpio::GpioChip& chip,
+            gpio::Clock& clock, Heating* heating)
+        : printer(job.resumption ? lifted(job.printer, *job.resumption) : job.printer),
+          shared(job.control ? *job.control : own_control, {heating != nullptr, can_resume(job)}),
+          traced(clock),
+          executor(chip, traced, executor_timing(printer), shared.stop_requests, &shared.marks,
+                   &shared.course.wanted_pace),
+          life(printer, shared.control, shared.course, shared.layers, shared.desk,
+               {job.file, inspection.totals.layers, inspection.header.summary.estimated_time_s}) {
+        if (heating) life.cut = [heating] { (void)heating->stage->all_off(); };
+        if (job.resumption) life.begin_with(*job.resumption, job.is_lifted);
+    }
+
+    config::Printer printer;
     PrintControl own_control;
-    Shared shared(job.control ? *job.control : own_control, {heating != nullptr, can_resume(job)});
+    Shared shared;
+    gpio::TracingClock traced;
+    Executor executor;
+    Life life;
+    Outcome outcome;
+};
+
+// The real-time thread.
+void drive(Running& running, gpio::GpioChip& chip, Diagnostics& warnings) {
+    Shared& shared = running.shared;
+    take_precedence(warnings);
+    while (!shared.filled.load() && !shared.stop_requests.load())
+        std::this_thread::sleep_for(executor_nap);
+    running.outcome.executed = drain(running.executor, running.traced, shared);
+    const Status released = chip.release();
+    if (!released && running.outcome.executed) running.outcome.executed = released.error();
+    shared.finished.store(true);
+}
+
+// What a print may have beside its lines.
+struct Around {
+    Heating* heating = nullptr;
+    Buttons* buttons = nullptr;
+    std::optional<Watchdog> watchdog{};
+};
+
+Result<PrintReport> run(const PrintJob& job, const Prepared& prepared, gpio::GpioChip& chip,
+                        gpio::Clock& clock, Around around) {
+    Heating* const heating = around.heating;
     const Inspection& inspection = prepared.inspection;
+    Running running(job, inspection, chip, clock, heating);
+    Shared& shared = running.shared;
+    Life& life = running.life;
     Result<EventStream> stream =
-        EventStream::open(job.file, job.printer, inspection.filament_diameter_mm, &shared.orders);
+        EventStream::open(job.file, running.printer, inspection.filament_diameter_mm,
+                          &shared.orders, job.resumption ? job.resumption->first_layer : 0);
     if (!stream) return stream.error();
     const StopSignals signals;
     PrintReport report;
     report.warnings = prepared.notes;
+    FileIdentity identity;
+    const std::unique_ptr<JournalWriter> journal = journal_for(job, identity, report.warnings);
+    life.keep_journal(journal.get(), identity);
     lock_memory(report.warnings);
     if (job.begun) job.begun();
-    gpio::TracingClock traced(clock);
-    Executor executor(chip, traced, executor_timing(job.printer), shared.stop_requests,
-                      &shared.marks, &shared.course.wanted_pace);
-    Life life(job.printer, shared.control, shared.course, shared.layers, shared.desk,
-              {job.file, inspection.totals.layers, inspection.header.summary.estimated_time_s});
-    if (heating) life.cut = [heating] { (void)heating->stage->all_off(); };
-    Outcome outcome;
     Tending tending(heating, shared);
-    std::thread planner([&] { outcome.planned = fill(*stream, shared); });
-    std::thread edges([&] {
-        take_precedence(report.warnings);
-        while (!shared.filled.load() && !shared.stop_requests.load())
-            std::this_thread::sleep_for(executor_nap);
-        outcome.executed = drain(executor, traced, shared);
-        const Status released = chip.release();
-        if (!released && outcome.executed) outcome.executed = released.error();
-        shared.finished.store(true);
-    });
-    watch(signals, shared, job, inspection, life, heating);
-    edges.join();
-    planner.join();
-    tending.join();
-    const Status status = status_of(shared, life, outcome);
-    life.end(status, outcome.executed.ok() && shared.stop_requests < 2);
+    std::thread planner([&] { running.outcome.planned = fill(*stream, shared); });
+    std::thread edges([&] { drive(running, chip, report.warnings); });
+    {
+        Supervision supervision(std::move(around.watchdog));
+        watch({signals, shared, life, heating, around.buttons, supervision}, job, inspection);
+        edges.join();
+        planner.join();
+        tending.join();
+    }
+    if (life.journal_error()) report.warnings.push_back(*life.journal_error());
+    const Status status = status_of(shared, life, running.outcome);
+    life.end(status, running.outcome.executed.ok() && shared.stop_requests < 2);
+    if (journal && (status || life.is_cancelled())) journal->remove();
     if (!status) return status.error();
-    report_on(executor, traced, report);
+    report_on(running.executor, running.traced, report);
     report.paused_s = life.paused_s();
     return report;
+}
+
+Result<std::optional<Buttons>> open_buttons(const config::Printer& printer) {
+    const std::vector<gpio::InputRequest> requests = input_requests(printer);
+    if (requests.empty()) return std::optional<Buttons>();
+    auto lines = gpio::open_gpiod_inputs(requests);
+    if (!lines) return lines.error();
+    Result<Buttons> buttons = Buttons::start(printer, std::move(*lines));
+    if (!buttons) return buttons.error();
+    return std::optional<Buttons>(std::move(*buttons));
 }
 
 }  // namespace
 
 Result<PrintReport> print(const PrintJob& job, gpio::GpioChip& chip, gpio::Clock& clock,
-                          Heating* heating) {
+                          Heating* heating, Buttons* buttons) {
+    keep_stacks_small();
     const Result<Prepared> prepared = prepare(job);
     if (!prepared) return prepared.error();
     if (!heating && !job.no_heat && !prepared->inspection.demands.hottest.empty())
         return Diagnostic{Severity::error, ExitStatus::internal, "no heaters were opened", {}};
-    return run(job, *prepared, chip, clock, heating);
+    return run(job, *prepared, chip, clock, {heating, buttons});
 }
 
 Result<PrintReport> print(const PrintJob& job) {
+    keep_stacks_small();
     const Result<Prepared> prepared = prepare(job);
     if (!prepared) return prepared.error();
     const Result<std::vector<gpio::LineRequest>> requests = line_requests(job.printer);
@@ -298,8 +415,17 @@ Result<PrintReport> print(const PrintJob& job) {
         if (!opened) return opened.error();
         heating.emplace(std::move(*opened));
     }
+    Result<std::optional<Buttons>> buttons = open_buttons(job.printer);
+    if (!buttons) return buttons.error();
+    Around around{heating ? &*heating : nullptr, *buttons ? &**buttons : nullptr};
+    // Last of all: from here on it wants to be fed.
+    if (!job.printer.watchdog.device.empty()) {
+        Result<Watchdog> watchdog = Watchdog::open(job.printer.watchdog);
+        if (!watchdog) return watchdog.error();
+        around.watchdog.emplace(std::move(*watchdog));
+    }
     gpio::MonotonicClock clock;
-    return run(job, *prepared, **chip, clock, heating ? &*heating : nullptr);
+    return run(job, *prepared, **chip, clock, std::move(around));
 }
 
 std::string text_of(const PrintReport& report) {

@@ -13,7 +13,11 @@
 //     once; both end with status stopped.
 //  5. The pulses are those of the simulation, in the same order, with at least the same gaps.
 //  6. Commands of `control` are served as life.h says, by this thread; it tells there what the print is, to its end.
-//  7. Where the head is afterwards is known unless the message says that its position is lost.
+//  7. With a journal (journal.h) the print can be resumed after it was cut off, also by a signal or a guard; one that is done
+//     or cancelled takes it away. A journal that cannot be written is a warning.
+//  8. The watchdog is fed by this thread as long as the heaters' thread ticks; the init system is told how it goes.
+//  9. Buttons and sensors act as life.h says; input lines that cannot be read take heat and motion away, as a guard does.
+// 10. Where the head is afterwards is known unless the message says that its position is lost.
 
 #pragma once
 
@@ -21,7 +25,9 @@
 
 #include "target/gpio/clock.h"
 #include "target/gpio/gpio_chip.h"
+#include "target/run/buttons.h"
 #include "target/run/heating.h"
+#include "target/run/resumption.h"
 #include "target/run/simulate.h"
 
 namespace lyr::run {
@@ -34,6 +40,9 @@ struct PrintJob {
     PrintControl* control = nullptr;  // none: only signals and buttons do something
     // Called once, when all lines are held; from here on threads may be started.
     std::function<void()> begun{};
+    std::string journal{};  // its path; empty: none
+    std::optional<Resumption> resumption{};
+    bool is_lifted = false;  // for the resumption, and at start_mm in x and y: homed
 };
 
 struct PrintReport {
@@ -50,9 +59,9 @@ struct PrintReport {
 
 // On the lines that the printer's file names.
 Result<PrintReport> print(const PrintJob& job);
-// On any lines and clock, and any heaters; none: nothing is heated.
+// On any lines and clock, and any heaters and buttons; none: nothing is heated, nothing pressed.
 Result<PrintReport> print(const PrintJob& job, gpio::GpioChip& chip, gpio::Clock& clock,
-                          Heating* heating = nullptr);
+                          Heating* heating = nullptr, Buttons* buttons = nullptr);
 
 std::string text_of(const PrintReport& report);
 

@@ -12,17 +12,9 @@
 namespace lyr::run {
 namespace {
 
-// Of threads that are started later: what is locked is real memory, and the usual 8 MiB of each would be most of what the
+// Of threads: what is locked is real memory, and the usual 8 MiB of each would be most of what the
 // program has. None of them goes deep.
 constexpr std::size_t stack_bytes = std::size_t{1} << 19;
-
-void keep_stacks_small() {
-    pthread_attr_t attributes;
-    if (::pthread_attr_init(&attributes) != 0) return;
-    if (::pthread_attr_setstacksize(&attributes, stack_bytes) == 0)
-        (void)::pthread_setattr_default_np(&attributes);
-    ::pthread_attr_destroy(&attributes);
-}
 
 // Above everything that is not the kernel's own: its interrupt threads have 50.
 constexpr int precedence = 49;
@@ -36,8 +28,15 @@ Diagnostic refused(const std::string& what, int error, const std::string& remedy
 
 }  // namespace
 
+void keep_stacks_small() {
+    pthread_attr_t attributes;
+    if (::pthread_attr_init(&attributes) != 0) return;
+    if (::pthread_attr_setstacksize(&attributes, stack_bytes) == 0)
+        (void)::pthread_setattr_default_np(&attributes);
+    ::pthread_attr_destroy(&attributes);
+}
+
 void lock_memory(Diagnostics& warnings) {
-    keep_stacks_small();
     if (::mlockall(MCL_CURRENT | MCL_FUTURE) != 0)
         warnings.push_back(
             refused("locking memory", errno, "grant CAP_IPC_LOCK or raise `ulimit -l`"));

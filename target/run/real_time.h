@@ -9,8 +9,11 @@
 
 namespace lyr::run {
 
+// Of the threads that are started from here on.
+void keep_stacks_small();
+
 // Keeps the memory of the whole process, present and future, in place: a page fault would cost
-// milliseconds. Threads that are started later have small stacks.
+// milliseconds.
 void lock_memory(Diagnostics& warnings);
 
 // Puts the calling thread before all ordinary ones (SCHED_FIFO).

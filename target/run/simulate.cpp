@@ -43,6 +43,12 @@ Diagnostic tripped(const thermal::SimulatedHeat& heat, std::uint32_t layer) {
     return error;
 }
 
+// Whether anybody asks anything of the print.
+bool lives(const SimulationJob& job) {
+    return !job.script.empty() || job.control || job.resumption ||
+           !job.line_faults.signals_s.empty();
+}
+
 // Everything that a simulation is made of, in the order in which the steps pass through it.
 class Simulation {
 public:
@@ -54,7 +60,8 @@ public:
           heats_(heats),
           control_(job.control ? *job.control : own_control_),
           marked_(orders != nullptr),
-          heat_(job.printer, heats_ ? job.faults : std::vector<thermal::Fault>()),
+          heat_(job.printer, heats_ ? job.faults : std::vector<thermal::Fault>(),
+                job.line_faults.heaters),
           attendant_(orders ? *orders : no_orders_, marks_, heats ? &heat_.control() : nullptr,
                      is_lived() ? &desk_ : nullptr),
           clock_(heat_, attendant_, control_.stop_requests()),
@@ -65,8 +72,15 @@ public:
           checks_(job.printer, [this](PathCurve& curve) { return file_.next(curve); }),
           decoder_([this](const DecodedStep& step) { checks_.step(step); }),
           layout_(line_layout(job.printer)),
-          mock_(layout_.names.size(), clock_,
-                [this](const gpio::LineWrite& write) { decode(write); }) {
+          mock_(
+              layout_.names.size(), clock_, [this](const gpio::LineWrite& write) { decode(write); },
+              job.line_faults.motors) {
+        // Without its switch a heater is cold at once.
+        life_.cut = [this] { heat_.release(); };
+        if (job.heat_watch)
+            heat_.observe(
+                [this](double time_s) { job_.heat_watch(time_s, heat_.any_heater_on()); });
+        if (job.resumption) life_.begin_with(*job.resumption, false);
         if (is_lived()) clock_.on_tick = [this](double time_s) { live(time_s); };
     }
 
@@ -82,8 +96,7 @@ private:
         write.time_ns -= executor_ ? executor_->behind_ns() : 0;
         decoder_.write(write);
     }
-    // Whether anybody asks anything of it.
-    bool is_lived() const { return !job_.script.empty() || job_.control; }
+    bool is_lived() const { return lives(job_); }
     void live(double time_s);
     Diagnostic why_ended() const;
     bool asked_to_stop(const Executor& executor) const;
@@ -103,8 +116,9 @@ private:
     Course course_;
     LayerLog layers_;
     Life life_;
-    std::size_t posted_ = 0;  // of the script
+    std::size_t posted_ = 0, signalled_ = 0;  // of the script and of the signals
     StepPositions trip_steps_{};
+    bool is_derailed_ = false;  // a write failed
     const Executor* executor_ = nullptr;
     EventStream stream_;
     FilePath file_;
@@ -123,7 +137,10 @@ Status Simulation::run(ReplaceFile* trace) {
                       marked_ ? &marks_ : nullptr, &course_.wanted_pace);
     executor_ = &executor;
     Status pumped = pump(executor, trace);
-    life_.end(pumped, control_.stop_requests() < 2);
+    heat_.release();
+    if (job_.heat_watch)
+        job_.heat_watch(static_cast<double>(clock_.now_ns()) / ns_per_s, heat_.any_heater_on());
+    life_.end(pumped, !is_derailed_ && control_.stop_requests() < 2);
     trip_steps_ = executor.trip_steps();
     print_time_s_ = static_cast<double>(executor.time_ns()) / ns_per_s;
     waited_s_ = static_cast<double>(executor.waited_ns()) / ns_per_s;
@@ -145,6 +162,7 @@ Status Simulation::pump(Executor& executor, ReplaceFile* trace) {
         layers_.begin(stream_.steps().begun(), stream_.schedule().shift_ns());
         const Result<bool> executed =
             follow(events, executor, course_, clock_, control_.stop_requests());
+        is_derailed_ = !executed.ok();
         if (!executed) return executed.error();
         if (!*executed) return why_ended();
         if (!*more) return Done{};
@@ -157,14 +175,19 @@ Status Simulation::pump(Executor& executor, ReplaceFile* trace) {
 void Simulation::live(double time_s) {
     for (; posted_ < job_.script.size() && job_.script[posted_].time_s <= time_s; ++posted_)
         (void)control_.post(job_.script[posted_].command);
+    const std::vector<double>& signals_s = job_.line_faults.signals_s;
+    for (; signalled_ < signals_s.size() && signals_s[signalled_] <= time_s; ++signalled_)
+        ++control_.stop_requests();
     life_.tick(time_s);
-    if (life_.rests() && posted_ == job_.script.size() && !job_.control) ++control_.stop_requests();
+    if (life_.rests() && signals_s.empty() && posted_ == job_.script.size() && !job_.control)
+        ++control_.stop_requests();
 }
 
 Diagnostic Simulation::why_ended() const {
     if (heat_.control().trip()) return tripped(heat_, stream_.steps().layer());
     return ended(static_cast<double>(clock_.now_ns()) / ns_per_s, life_.layer(),
-                 life_.ended_by().value_or("the script ends, and the print rests"));
+                 life_.ended_by().value_or(signalled_ ? "stopped on request"
+                                                      : "the script ends, and the print rests"));
 }
 
 bool Simulation::asked_to_stop(const Executor& executor) const {
@@ -209,9 +232,8 @@ Heed heed(const Inspection& inspection, const SimulationJob& job) {
     const bool asked = !inspection.demands.hottest.empty();
     const auto possible = [&](bool no_heat) {
         result.notes.clear();
-        const bool can_resume = !job.script.empty() || job.control;
         const Status checked =
-            check_demands(inspection, job.printer, no_heat, result.notes, can_resume);
+            check_demands(inspection, job.printer, no_heat, result.notes, lives(job));
         if (checked) return true;
         result.notes.push_back(checked.error());
         result.notes.back().severity = Severity::warning;
@@ -228,7 +250,13 @@ Heed heed(const Inspection& inspection, const SimulationJob& job) {
 
 }  // namespace
 
-Result<SimulationReport> simulate(const SimulationJob& job) {
+Result<SimulationReport> simulate(const SimulationJob& asked) {
+    SimulationJob job = asked;
+    std::uint32_t first_layer = 0;
+    if (job.resumption) {
+        job.printer = lifted(job.printer, *job.resumption);
+        first_layer = job.resumption->first_layer;
+    }
     std::optional<ReplaceFile> trace;
     if (job.trace) {
         Result<ReplaceFile> opened = ReplaceFile::open(*job.trace);
@@ -239,12 +267,12 @@ Result<SimulationReport> simulate(const SimulationJob& job) {
     if (!inspection) return inspection.error();
     const double diameter_mm = inspection->filament_diameter_mm;
     Heed heeded = heed(*inspection, job);
-    const bool is_lived = !job.script.empty() || job.control;
-    OrderQueue orders({heeded.heats, is_lived});
-    OrderQueue* wanted = heeded.heats || is_lived ? &orders : nullptr;
-    Result<EventStream> stream = EventStream::open(job.file, job.printer, diameter_mm, wanted);
+    OrderQueue orders({heeded.heats, lives(job)});
+    OrderQueue* wanted = heeded.heats || lives(job) ? &orders : nullptr;
+    Result<EventStream> stream =
+        EventStream::open(job.file, job.printer, diameter_mm, wanted, first_layer);
     if (!stream) return stream.error();
-    Result<format::Reader> reader = open_file(job.file);
+    Result<format::Reader> reader = open_file(job.file, first_layer);
     if (!reader) return reader.error();
     Simulation simulation(job, *inspection, std::move(*stream),
                           FilePath(std::move(*reader), job.printer.start_mm, diameter_mm), wanted,

@@ -29,6 +29,7 @@
 #include "target/run/path_check.h"
 #include "target/run/print_control.h"
 #include "target/run/pulse_decoder.h"
+#include "target/run/resumption.h"
 #include "target/thermal/faults.h"
 
 namespace lyr::run {
@@ -43,6 +44,12 @@ using ProgressSink = std::function<void(const Progress&)>;
 // Asked now and then; true ends the simulation with status stopped.
 using StopQuestion = std::function<bool()>;
 
+// What else may happen to a board.
+struct LineFaults {
+    gpio::MockChip::Fault motors{}, heaters{};  // by the number of the write
+    std::vector<double> signals_s{};            // times of SIGTERM, in order
+};
+
 struct SimulationJob {
     std::string file;
     config::Printer printer;
@@ -53,6 +60,10 @@ struct SimulationJob {
     std::vector<thermal::Fault> faults{};
     std::vector<TimedCommand> script{};  // in order of time
     PrintControl* control = nullptr;     // to look on from outside
+    std::optional<Resumption> resumption{};
+    LineFaults line_faults{};
+    // After each tick of the heaters, and at the end.
+    std::function<void(double time_s, bool any_heater_on)> heat_watch{};
 };
 
 // What a heater did.

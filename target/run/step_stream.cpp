@@ -15,8 +15,9 @@ constexpr std::size_t most_waiting = 4 * motion::Planner::default_capacity;
 }  // namespace
 
 Result<StepStream> StepStream::open(const std::string& path, const config::Printer& printer,
-                                    double filament_diameter_mm, OrderQueue* orders) {
-    Result<format::Reader> reader = open_file(path);
+                                    double filament_diameter_mm, OrderQueue* orders,
+                                    std::uint32_t first_layer) {
+    Result<format::Reader> reader = open_file(path, first_layer);
     if (!reader) return reader.error();
     Result<motion::Planner> planner = motion::Planner::create(motion_limits(printer));
     if (!planner) return planner.error();

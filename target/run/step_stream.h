@@ -6,7 +6,8 @@
 //  2. Memory is bounded: it does not grow with the file.
 //  3. After next(), moves() are the planned moves that the batch has begun, in order; they belong to the
 //     steps from here on.
-//  4. With a queue, each order for heaters and fans is put there, and a mark among the steps where the motion has
+//  4. It begins with the layer `first_layer`, from 0, as if nothing had been before.
+//  5. With a queue, each order for heaters and fans is put there, and a mark among the steps where the motion has
 //     come so far; for one that waits, the motion stops first. Without, orders are left out.
 
 #pragma once
@@ -31,7 +32,8 @@ struct LayerBegin {
 class StepStream {
 public:
     static Result<StepStream> open(const std::string& path, const config::Printer& printer,
-                                   double filament_diameter_mm, OrderQueue* orders = nullptr);
+                                   double filament_diameter_mm, OrderQueue* orders = nullptr,
+                                   std::uint32_t first_layer = 0);
 
     // Appends the next steps; false: these were the last.
     Result<bool> next(std::vector<Step>& steps);

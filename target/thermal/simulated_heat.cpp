@@ -19,7 +19,8 @@ constexpr double time_rounding_s = 1e-6;
 
 }  // namespace
 
-SimulatedHeat::SimulatedHeat(const config::Printer& printer, std::vector<Fault> faults)
+SimulatedHeat::SimulatedHeat(const config::Printer& printer, std::vector<Fault> faults,
+                             gpio::MockChip::Fault line_fault)
     : bodies_([&] {
           std::vector<Body> bodies;
           for (const std::size_t i : heaters_of(printer))
@@ -28,7 +29,7 @@ SimulatedHeat::SimulatedHeat(const config::Printer& printer, std::vector<Fault> 
       }()),
       has_fan_(printer.part_fan.has_value()),
       faults_(std::move(faults)),
-      chip_(bodies_.size() + (has_fan_ ? 1 : 0), clock_, {}),
+      chip_(bodies_.size() + (has_fan_ ? 1 : 0), clock_, {}, std::move(line_fault)),
       stage_(outputs(printer), &chip_),
       control_(ports(printer), has_fan_, stage_) {}
 

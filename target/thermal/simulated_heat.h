@@ -24,12 +24,17 @@ public:
     // After each tick.
     using Observer = std::function<void(double time_s)>;
 
-    SimulatedHeat(const config::Printer& printer, std::vector<Fault> faults);
+    // `line_fault`: of the heaters' lines.
+    SimulatedHeat(const config::Printer& printer, std::vector<Fault> faults,
+                  gpio::MockChip::Fault line_fault = {});
     SimulatedHeat(const SimulatedHeat&) = delete;
     SimulatedHeat& operator=(const SimulatedHeat&) = delete;
 
     void advance_to(double time_s);
     void observe(Observer observer) { observer_ = std::move(observer); }
+
+    // The lines go off and are handed back, as at the end of a print.
+    void release() { (void)stage_.release(); }
 
     HeatControl& control() { return control_; }
     const HeatControl& control() const { return control_; }

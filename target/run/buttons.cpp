@@ -1,0 +1,52 @@
+#include "target/run/buttons.h"
+
+#include <array>
+
+namespace lyr::run {
+
+std::vector<gpio::InputRequest> input_requests(const config::Printer& printer) {
+    std::vector<gpio::InputRequest> requests;
+    for (std::size_t i = 0; i < printer.inputs.size(); ++i) {
+        const std::optional<config::Pin>& pin = printer.inputs[i];
+        if (!pin) continue;
+        requests.push_back({{"input." + std::string(config::input_names[i]), pin->chip, pin->line,
+                             pin->active_low},
+                            static_cast<gpio::Pull>(pin->pull)});
+    }
+    return requests;
+}
+
+Result<Buttons> Buttons::start(const config::Printer& printer,
+                               std::unique_ptr<gpio::InputLines> lines) {
+    const Result<gpio::LineMask> levels = lines->read();
+    if (!levels) return levels.error();
+    Buttons buttons(std::move(lines));
+    for (std::size_t i = 0; i < printer.inputs.size(); ++i) {
+        if (!printer.inputs[i]) continue;
+        const std::size_t line = buttons.inputs_.size();
+        const bool is_active = (*levels & gpio::line_bit(line)) != 0;
+        const bool is_state = i == config::input_emergency || i == config::input_filament;
+        gpio::Debounce debounce(settle_ns, is_active && !is_state);
+        if (is_active && is_state) debounce.edge({0, static_cast<std::uint8_t>(line), true});
+        buttons.inputs_.push_back({i, debounce});
+    }
+    return buttons;
+}
+
+Result<std::vector<std::size_t>> Buttons::pressed(std::int64_t now_ns) {
+    std::array<gpio::InputEdge, 64> edges;
+    for (std::size_t count = edges.size(); count == edges.size();) {
+        const Result<std::size_t> collected = lines_->collect(edges);
+        if (!collected) return collected.error();
+        count = *collected;
+        for (std::size_t i = 0; i < count; ++i)
+            if (edges[i].line < inputs_.size()) inputs_[edges[i].line].debounce.edge(edges[i]);
+    }
+    std::vector<std::size_t> pressed;
+    for (Input& input : inputs_)
+        if (const auto change = input.debounce.settled(now_ns); change && change->active)
+            pressed.push_back(input.number);
+    return pressed;
+}
+
+}  // namespace lyr::run

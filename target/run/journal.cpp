@@ -1,0 +1,217 @@
+// A slot is one sector of a disk, and the two lie in different blocks of a file system:
+//
+//     bytes 0..7   "LYRJRNL1"       32..35  layers
+//           8..15  sequence         36..39  1 if parked
+//          16..23  file's length    40..47  time_ns
+//          24..27  file's CRC       48..55  height in nm, if parked
+//          28..31  layer            56..59  CRC-32C of bytes 0..55
+//
+// All numbers are little-endian.
+
+#include "target/run/journal.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+#include "base/file_place.h"
+#include "format/crc32c.h"
+
+namespace lyr::run {
+namespace {
+
+constexpr std::size_t slot_bytes = 60, checked_bytes = 56;
+constexpr off_t slot_spacing = 4096;
+constexpr std::array<char, 8> magic{'L', 'Y', 'R', 'J', 'R', 'N', 'L', '1'};
+using Slot = std::array<std::byte, slot_bytes>;
+
+template <class Number>
+void put(Slot& slot, std::size_t at, Number number) {
+    const auto bits = static_cast<std::uint64_t>(number);
+    for (std::size_t i = 0; i < sizeof(Number); ++i)
+        slot[at + i] = static_cast<std::byte>(bits >> (8 * i) & 0xff);
+}
+
+template <class Number>
+Number get(const Slot& slot, std::size_t at) {
+    std::uint64_t bits = 0;
+    for (std::size_t i = 0; i < sizeof(Number); ++i)
+        bits |= std::to_integer<std::uint64_t>(slot[at + i]) << (8 * i);
+    return static_cast<Number>(bits);
+}
+
+Slot slot_of(const JournalEntry& entry, std::uint64_t sequence) {
+    Slot slot{};
+    std::memcpy(slot.data(), magic.data(), magic.size());
+    put(slot, 8, sequence);
+    put(slot, 16, entry.file.bytes);
+    put(slot, 24, entry.file.crc);
+    put(slot, 28, entry.layer);
+    put(slot, 32, entry.layers);
+    put(slot, 36, std::uint32_t{entry.parked_nm ? 1u : 0u});
+    put(slot, 40, entry.time_ns);
+    put(slot, 48, entry.parked_nm.value_or(0));
+    put(slot, checked_bytes, format::crc32c(std::span(slot).first(checked_bytes)));
+    return slot;
+}
+
+struct Numbered {
+    std::uint64_t sequence = 0;
+    JournalEntry entry;
+};
+
+std::optional<Numbered> entry_of(const Slot& slot) {
+    if (std::memcmp(slot.data(), magic.data(), magic.size()) != 0) return std::nullopt;
+    const std::uint32_t crc = format::crc32c(std::span(slot).first(checked_bytes));
+    if (get<std::uint32_t>(slot, checked_bytes) != crc) return std::nullopt;
+    Numbered read{get<std::uint64_t>(slot, 8),
+                  {{get<std::uint64_t>(slot, 16), get<std::uint32_t>(slot, 24)},
+                   get<std::uint32_t>(slot, 28),
+                   get<std::uint32_t>(slot, 32),
+                   get<std::int64_t>(slot, 40),
+                   {}}};
+    if (get<std::uint32_t>(slot, 36) != 0) read.entry.parked_nm = get<std::int64_t>(slot, 48);
+    return read;
+}
+
+std::optional<Numbered> latest(int descriptor) {
+    std::optional<Numbered> found;
+    for (const off_t place : {off_t{0}, slot_spacing}) {
+        Slot slot{};
+        const ssize_t count = ::pread(descriptor, slot.data(), slot.size(), place);
+        if (count != static_cast<ssize_t>(slot.size())) continue;
+        const std::optional<Numbered> read = entry_of(slot);
+        if (read && (!found || read->sequence > found->sequence)) found = read;
+    }
+    return found;
+}
+
+Diagnostic failed(ExitStatus status, const std::string& what, const std::string& path) {
+    return {Severity::error, status, what + ": " + std::strerror(errno), {.file = path}};
+}
+
+// A name is on the disk when its folder is.
+void sync_folder_of(const std::string& path) {
+    const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    const int descriptor =
+        ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor < 0) return;
+    (void)::fsync(descriptor);
+    ::close(descriptor);
+}
+
+}  // namespace
+
+Result<FileIdentity> identity_of(const std::string& path) {
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0) return failed(ExitStatus::input, "cannot read the print", path);
+    std::array<std::byte, 65'536> buffer;
+    FileIdentity identity;
+    ssize_t count = 0;
+    while ((count = ::read(descriptor, buffer.data(), buffer.size())) > 0) {
+        const auto size = static_cast<std::size_t>(count);
+        identity.bytes += size;
+        identity.crc = format::crc32c(std::span(buffer).first(size), identity.crc);
+    }
+    const int error = errno;
+    ::close(descriptor);
+    errno = error;
+    if (count < 0) return failed(ExitStatus::input, "cannot read the print", path);
+    return identity;
+}
+
+Result<std::optional<JournalEntry>> read_journal(const std::string& path) {
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0 && errno == ENOENT) return std::optional<JournalEntry>();
+    if (descriptor < 0) return failed(ExitStatus::input, "cannot read the journal", path);
+    const std::optional<Numbered> found = latest(descriptor);
+    ::close(descriptor);
+    return found ? std::optional(found->entry) : std::nullopt;
+}
+
+Result<Journal> Journal::open(const std::string& path) {
+    constexpr mode_t for_all_to_read = 0644;
+    const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, for_all_to_read);
+    if (descriptor < 0) return failed(ExitStatus::output, "cannot write the journal", path);
+    sync_folder_of(path);
+    const std::optional<Numbered> before = latest(descriptor);
+    return Journal(path, descriptor, before ? before->sequence : 0);
+}
+
+Journal::Journal(Journal&& other) noexcept
+    : path_(std::move(other.path_)),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      sequence_(other.sequence_) {}
+
+Journal::~Journal() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+Status Journal::write(const JournalEntry& entry) {
+    const Slot slot = slot_of(entry, sequence_ + 1);
+    const off_t place = (sequence_ + 1) % 2 == 0 ? 0 : slot_spacing;
+    errno = ENOSPC;  // of a write that was cut short
+    const ssize_t written = ::pwrite(descriptor_, slot.data(), slot.size(), place);
+    if (written != static_cast<ssize_t>(slot.size()) || ::fdatasync(descriptor_) != 0)
+        return failed(ExitStatus::output, "cannot write the journal", path_);
+    ++sequence_;
+    return Done{};
+}
+
+void Journal::remove() {
+    // A device that stands in for it is not ours.
+    if (is_regular_file(path_)) (void)::unlink(path_.c_str());
+}
+
+JournalWriter::JournalWriter(Journal journal)
+    : journal_(std::move(journal)), thread_([this] { work(); }) {}
+
+JournalWriter::~JournalWriter() {
+    {
+        const std::lock_guard lock(mutex_);
+        ends_ = true;
+    }
+    changed_.notify_one();
+    thread_.join();
+    if (removes_) journal_.remove();
+}
+
+void JournalWriter::post(const JournalEntry& entry) {
+    {
+        const std::lock_guard lock(mutex_);
+        waiting_ = entry;
+    }
+    changed_.notify_one();
+}
+
+void JournalWriter::remove() {
+    const std::lock_guard lock(mutex_);
+    waiting_.reset();
+    removes_ = true;
+}
+
+std::optional<Diagnostic> JournalWriter::take_error() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(error_, std::nullopt);
+}
+
+void JournalWriter::work() {
+    std::unique_lock lock(mutex_);
+    while (true) {
+        changed_.wait(lock, [this] { return waiting_ || ends_; });
+        if (!waiting_) return;
+        const JournalEntry entry = *std::exchange(waiting_, std::nullopt);
+        lock.unlock();
+        const Status written = journal_.write(entry);
+        lock.lock();
+        if (!written && !has_failed_) error_ = written.error();
+        has_failed_ = has_failed_ || !written;
+    }
+}
+
+}  // namespace lyr::run

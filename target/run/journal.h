@@ -1,0 +1,92 @@
+// How far a print has come, on the disk, so that it can go on after the power failed: a small file with two slots, written
+// in turn, each with a number that grows and a checksum. Whatever becomes of the slot that is being written, the other
+// one has the state before.
+//
+// Contract
+//  1. read_journal() gives the latest entry that is whole. A write that was cut at any byte leaves that or the one before;
+//     a byte that was changed at any place loses the entry that it belongs to, and never makes another one of it.
+//  2. Journal::write() returns when the entry is on the disk (fdatasync), and never while the other slot is at risk.
+//  3. A JournalWriter does so on a thread of its own, since a memory card may take seconds: post() returns at once, and of
+//     entries that wait for the disk only the latest is kept. An error is told once.
+//  4. identity_of() tells files apart by their length and the CRC-32C of all their bytes.
+
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "base/diagnostic.h"
+
+namespace lyr::run {
+
+struct FileIdentity {
+    std::uint64_t bytes = 0;
+    std::uint32_t crc = 0;
+    friend bool operator==(const FileIdentity&, const FileIdentity&) = default;
+};
+
+Result<FileIdentity> identity_of(const std::string& path);
+
+struct JournalEntry {
+    FileIdentity file;
+    std::uint32_t layer = 0;  // that the head was in, from 1; 0: before the first
+    std::uint32_t layers = 0;
+    std::int64_t time_ns = 0;               // of the plan
+    std::optional<std::int64_t> parked_nm;  // height of the head, if it was parked
+    friend bool operator==(const JournalEntry&, const JournalEntry&) = default;
+};
+
+// None: no file, or none with a whole entry. Errors (status input): it cannot be read.
+Result<std::optional<JournalEntry>> read_journal(const std::string& path);
+
+class Journal {
+public:
+    // Makes the file, or goes on after the entries that it has. Errors (status output).
+    static Result<Journal> open(const std::string& path);
+    Journal(Journal&& other) noexcept;
+    Journal& operator=(Journal&&) = delete;
+    ~Journal();
+
+    Status write(const JournalEntry& entry);
+    // The print is over, and nothing of it is left to resume.
+    void remove();
+
+private:
+    Journal(std::string path, int descriptor, std::uint64_t sequence)
+        : path_(std::move(path)), descriptor_(descriptor), sequence_(sequence) {}
+
+    std::string path_;
+    int descriptor_;
+    std::uint64_t sequence_;  // of the entry written last
+};
+
+class JournalWriter {
+public:
+    explicit JournalWriter(Journal journal);
+    // Writes what waits, and ends.
+    ~JournalWriter();
+    JournalWriter(const JournalWriter&) = delete;
+    JournalWriter& operator=(const JournalWriter&) = delete;
+
+    void post(const JournalEntry& entry);
+    std::optional<Diagnostic> take_error();
+    // Instead of all entries that wait.
+    void remove();
+
+private:
+    void work();
+
+    Journal journal_;
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::optional<JournalEntry> waiting_;
+    std::optional<Diagnostic> error_;
+    bool has_failed_ = false, ends_ = false, removes_ = false;
+    std::thread thread_;
+};
+
+}  // namespace lyr::run

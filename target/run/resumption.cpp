@@ -1,0 +1,64 @@
+#include "target/run/resumption.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "base/text.h"
+#include "target/run/inspect.h"
+
+namespace lyr::run {
+namespace {
+
+constexpr double nm_per_mm = 1e6;
+
+Diagnostic refused(std::string message, const std::string& file) {
+    return {Severity::error, ExitStatus::input, std::move(message), {.file = file}};
+}
+
+}  // namespace
+
+std::string journal_path(const config::Printer& printer, const std::string& file) {
+    if (printer.recovery_folder.empty()) return file + ".journal";
+    const std::filesystem::path name = std::filesystem::path(file).filename();
+    return (std::filesystem::path(printer.recovery_folder) / name).string() + ".journal";
+}
+
+Result<Resumption> find_resumption(const config::Printer& printer, const std::string& file) {
+    const std::string path = journal_path(printer, file);
+    const Result<std::optional<JournalEntry>> entry = read_journal(path);
+    if (!entry) return entry.error();
+    if (!*entry) return refused("nothing to resume: there is no journal " + path, file);
+    const Result<FileIdentity> identity = identity_of(file);
+    if (!identity) return identity.error();
+    if (!(*identity == (*entry)->file))
+        return refused("the file is not the one that was being printed: it was changed since",
+                       file);
+    Resumption resumption{**entry, std::max(1u, (*entry)->layer) - 1, 0, {}};
+    Result<format::Reader> reader = open_file(file, resumption.first_layer);
+    if (!reader) return reader.error();
+    if (const auto start = reader->next(); !start) return start.error();
+    resumption.state = reader->layer().state;
+    resumption.stopped_z_mm = resumption.state.z_mm;
+    if (const auto parked_nm = resumption.entry.parked_nm)
+        resumption.stopped_z_mm = static_cast<double>(*parked_nm) / nm_per_mm;
+    return resumption;
+}
+
+config::Printer lifted(const config::Printer& printer, const Resumption& resumption) {
+    config::Printer machine = printer;
+    const double z_mm = resumption.stopped_z_mm;
+    machine.start_mm[config::axis_z] =
+        std::max(z_mm, std::min(z_mm + printer.pause.lift_mm, printer.axes[config::axis_z].max_mm));
+    return machine;
+}
+
+std::string text_of(const Resumption& resumption, const std::string& file) {
+    constexpr double ns_per_s = 1e9;
+    return formatted(
+        "%s was cut off in layer %u of %u, %.0f s into the print, the head at z %.3f mm%s\n",
+        file.c_str(), resumption.first_layer + 1, resumption.entry.layers,
+        static_cast<double>(resumption.entry.time_ns) / ns_per_s, resumption.stopped_z_mm,
+        resumption.entry.parked_nm ? ", parked" : "");
+}
+
+}  // namespace lyr::run

@@ -1,0 +1,214 @@
+// Contract of target/run/journal.h, by number: the file is cut and changed at every byte.
+
+#include "target/run/journal.h"
+
+#include <doctest/doctest.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+using namespace lyr;
+using namespace lyr::run;
+
+namespace {
+
+// A file in memory: tens of thousands of versions of it are read.
+struct Memory {
+    int descriptor = ::memfd_create("journal", 0);
+    std::string path = "/proc/self/fd/" + std::to_string(descriptor);
+
+    ~Memory() { ::close(descriptor); }
+    std::string bytes() const {
+        std::string text(static_cast<std::size_t>(::lseek(descriptor, 0, SEEK_END)), '\0');
+        CHECK(::pread(descriptor, text.data(), text.size(), 0) ==
+              static_cast<ssize_t>(text.size()));
+        return text;
+    }
+    void put(const std::string& bytes) const {
+        const bool put = ::ftruncate(descriptor, 0) == 0 &&
+                         ::pwrite(descriptor, bytes.data(), bytes.size(), 0) ==
+                             static_cast<ssize_t>(bytes.size());
+        if (!put) FAIL("no memory");
+    }
+    std::optional<JournalEntry> read() const {
+        const auto entry = read_journal(path);
+        if (!entry.ok()) FAIL("unreadable");
+        return *entry;
+    }
+};
+
+struct Bench {
+    std::string path = (std::filesystem::temp_directory_path() / "lyr_run_journal").string();
+
+    Bench() { std::filesystem::remove(path); }
+    ~Bench() { std::filesystem::remove(path); }
+    std::optional<JournalEntry> read() const {
+        const auto entry = read_journal(path);
+        REQUIRE(entry.ok());
+        return *entry;
+    }
+};
+
+JournalEntry entry_of(std::uint32_t layer) {
+    JournalEntry entry{{1'234'567'890'123, 0xdeadbeef}, layer, 400, layer * 7'000'000'000, {}};
+    if (layer % 3 == 0) entry.parked_nm = 40'000'000 + layer;
+    return entry;
+}
+
+// The files after each of so many entries.
+std::vector<std::string> states_of(const Memory& bench, std::uint32_t count) {
+    std::vector<std::string> states;
+    Result<Journal> journal = Journal::open(bench.path);
+    REQUIRE(journal.ok());
+    for (std::uint32_t i = 0; i < count; ++i) {
+        REQUIRE(journal->write(entry_of(i)).ok());
+        states.push_back(bench.bytes());
+    }
+    return states;
+}
+
+}  // namespace
+
+TEST_CASE("journal 1: what was written last is read, before and after it was opened again") {
+    const Bench bench;
+    CHECK_FALSE(bench.read());
+    for (std::uint32_t i = 0; i < 12; ++i) {
+        Result<Journal> journal = Journal::open(bench.path);
+        REQUIRE(journal.ok());
+        REQUIRE(journal->write(entry_of(i)).ok());
+        CHECK(bench.read() == entry_of(i));
+        REQUIRE(journal->write(entry_of(i + 100)).ok());
+        CHECK(bench.read() == entry_of(i + 100));
+    }
+    Result<Journal> journal = Journal::open(bench.path);
+    REQUIRE(journal.ok());
+    journal->remove();
+    CHECK_FALSE(std::filesystem::exists(bench.path));
+    CHECK_FALSE(bench.read());
+}
+
+TEST_CASE("journal 1: a write that is cut at any byte leaves the entry before it, or is whole") {
+    const Memory bench;
+    const std::vector<std::string> states = states_of(bench, 8);
+    for (std::uint32_t i = 1; i < states.size(); ++i) {
+        const std::string &before = states[i - 1], &after = states[i];
+        std::size_t wrong = 0, old = 0;
+        for (std::size_t cut = 0; cut <= after.size(); ++cut) {
+            // The bytes before the cut are new, those behind it old, or not there yet.
+            std::string torn = after.substr(0, cut);
+            if (cut < before.size()) torn += before.substr(cut);
+            bench.put(torn);
+            const std::optional<JournalEntry> read = bench.read();
+            wrong += read != entry_of(i) && read != entry_of(i - 1);
+            old += read == entry_of(i - 1);
+        }
+        CHECK(wrong == 0);
+        CHECK(old > 0);
+    }
+}
+
+TEST_CASE("journal 1: a file that ends at any byte has an entry that is whole, or none") {
+    const Memory bench;
+    const std::string whole = states_of(bench, 5).back();
+    std::size_t wrong = 0, none = 0;
+    for (std::size_t length = 0; length <= whole.size(); ++length) {
+        bench.put(whole.substr(0, length));
+        const std::optional<JournalEntry> read = bench.read();
+        none += !read;
+        wrong += read && read != entry_of(4) && read != entry_of(3);
+    }
+    CHECK(wrong == 0);
+    // The first slot has 60 bytes.
+    CHECK(none == 60);
+}
+
+TEST_CASE("journal 1: any byte that is changed loses its entry and makes no other of it") {
+    for (const std::uint32_t count : {5u, 6u}) {
+        const Memory bench;
+        const std::string whole = states_of(bench, count).back();
+        std::size_t wrong = 0, lost = 0;
+        for (std::size_t at = 0; at < whole.size(); ++at)
+            for (const int change : {0x01, 0x80, 0xff}) {
+                std::string changed = whole;
+                changed[at] = static_cast<char>(changed[at] ^ change);
+                bench.put(changed);
+                const std::optional<JournalEntry> read = bench.read();
+                lost += read == entry_of(count - 2);
+                wrong += read != entry_of(count - 1) && read != entry_of(count - 2);
+            }
+        CHECK(wrong == 0);
+        CHECK(lost == 3 * 60);
+    }
+}
+
+TEST_CASE("journal 1: a file of something else is no journal, and what cannot be read is told") {
+    const Memory bench;
+    bench.put(std::string(10'000, 'x'));
+    CHECK_FALSE(bench.read());
+    const auto folder = read_journal("/proc/self/mem/x");
+    REQUIRE_FALSE(folder.ok());
+    CHECK(folder.error().status == ExitStatus::input);
+    const Result<Journal> refused = Journal::open("/nonexistent/folder/journal");
+    REQUIRE_FALSE(refused.ok());
+    CHECK(refused.error().status == ExitStatus::output);
+    CHECK(to_string(refused.error()).find("/nonexistent/folder/journal") != std::string::npos);
+}
+
+TEST_CASE("journal 2, 3: a full disk is told once, from either side") {
+    // What is written there finds no room.
+    Result<Journal> full = Journal::open("/dev/full");
+    REQUIRE(full.ok());
+    const Status written = full->write(entry_of(1));
+    REQUIRE_FALSE(written.ok());
+    CHECK(written.error().status == ExitStatus::output);
+    CHECK(written.error().message.find("No space left") != std::string::npos);
+    JournalWriter writer(std::move(*full));
+    std::optional<Diagnostic> told;
+    for (std::uint32_t i = 0; i < 200 && !told; ++i) {
+        writer.post(entry_of(i));
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        told = writer.take_error();
+    }
+    REQUIRE(told);
+    writer.post(entry_of(9));
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    CHECK_FALSE(writer.take_error());
+}
+
+TEST_CASE(
+    "journal 3: the writer's last entry is on the disk when it has ended; nothing after remove()") {
+    const Bench bench;
+    {
+        JournalWriter writer(*Journal::open(bench.path));
+        for (std::uint32_t i = 0; i < 50; ++i) writer.post(entry_of(i));
+    }
+    CHECK(bench.read() == entry_of(49));
+    {
+        JournalWriter writer(*Journal::open(bench.path));
+        writer.post(entry_of(50));
+        writer.remove();
+    }
+    CHECK_FALSE(std::filesystem::exists(bench.path));
+}
+
+TEST_CASE("journal 4: files differ by length and by any byte") {
+    const Memory bench;
+    const auto identity = [&](const std::string& bytes) {
+        bench.put(bytes);
+        const auto found = identity_of(bench.path);
+        REQUIRE(found.ok());
+        return *found;
+    };
+    const std::string text(200'000, 'a');
+    const FileIdentity whole = identity(text);
+    CHECK(whole == identity(text));
+    CHECK(whole.bytes == text.size());
+    CHECK_FALSE(whole == identity(text + 'a'));
+    for (const std::size_t at : {0u, 65'535u, 65'536u, 199'999u}) {
+        std::string changed = text;
+        changed[at] = 'b';
+        CHECK_FALSE(whole == identity(changed));
+    }
+    CHECK_FALSE(identity_of("/nonexistent").ok());
+}

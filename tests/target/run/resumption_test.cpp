@@ -1,0 +1,214 @@
+// Contract of target/run/resumption.h, by number, and what life.h (7, 8) and print.h (6 to 8) say: prints that are cut off,
+// and go on.
+
+#include "target/run/resumption.h"
+
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+
+#include "target/gpio/mock_chip.h"
+#include "target/run/print.h"
+#include "target/run/print_files.h"
+
+using namespace lyr;
+using namespace lyr::run;
+using namespace lyr::tests;
+
+namespace {
+
+constexpr std::size_t line_count = 8;
+
+config::Printer patient_printer() {
+    config::Printer printer = config::generic_printer();
+    printer.pulse.late_limit_ns = 10'000'000'000;
+    printer.heaters = {};
+    // Real time is not spent on the way.
+    printer.pause.lift_mm = 0.3;
+    printer.pause.retract_mm = 0.2;
+    return printer;
+}
+
+void draw_small(const Pen& pen) {
+    pen.path(80);
+    pen.travel(0, 0);
+    pen.line(4, 0);
+    pen.arc(4, 4, 1);
+    pen.line(0, 0);
+}
+
+// Absolute, in mm, as the steps say.
+double end_mm(const SimulationReport& report, std::size_t axis) {
+    return report.printer.start_mm[axis] +
+           static_cast<double>(report.positions[axis]) / report.printer.axes[axis].steps_per_mm;
+}
+
+void write_entry(const std::string& file, std::uint32_t layer,
+                 std::optional<std::int64_t> parked_nm = {}) {
+    Result<Journal> journal = Journal::open(file + ".journal");
+    REQUIRE(journal.ok());
+    REQUIRE(journal->write({*identity_of(file), layer, 6, 5'000'000'000, parked_nm}).ok());
+}
+
+}  // namespace
+
+TEST_CASE(
+    "resumption 1, 3: from any layer a print goes on as it would have, and ends where it would "
+    "have") {
+    const config::Printer printer = config::generic_printer();
+    const std::string file = write_print(
+        "resume", {draw_square, draw_arcs, draw_hatch, draw_climb, draw_circles, draw_wipes}, {},
+        [](format::LayerState& state) {
+            state.temperatures.push_back({{format::HeaterKind::tool, 0}, 210});
+        });
+    const Result<SimulationReport> whole = simulate({file, printer, {}, {}, {}});
+    REQUIRE(whole.ok());
+    for (std::uint32_t layer = 0; layer <= 6; ++layer) {
+        for (const bool is_parked : {false, true}) {
+            CAPTURE(layer);
+            write_entry(file, layer,
+                        is_parked ? std::optional(std::int64_t{6'500'000}) : std::nullopt);
+            const Result<Resumption> found = find_resumption(printer, file);
+            REQUIRE_MESSAGE(found.ok(), (found.ok() ? "" : to_string(found.error())));
+            CHECK(found->first_layer == std::max(1u, layer) - 1);
+            const double z_mm = is_parked ? 6.5 : 0.2 * std::max(1u, layer);
+            CHECK(found->stopped_z_mm == doctest::Approx(z_mm));
+            CHECK(lifted(printer, *found).start_mm[2] == doctest::Approx(z_mm + 5));
+            SimulationJob job{file, printer, {}, {}, {}};
+            job.resumption = *found;
+            const Result<SimulationReport> resumed = simulate(job);
+            REQUIRE_MESSAGE(resumed.ok(), (resumed.ok() ? "" : to_string(resumed.error())));
+            CHECK(resumed->within_limits());
+            // Lifted by 5 mm, and nothing else was moved aside.
+            CHECK(resumed->trip_steps == StepPositions{0, 0, 2'000, 0});
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                CHECK(end_mm(*resumed, axis) == doctest::Approx(end_mm(*whole, axis)));
+            CHECK(resumed->paused_s + resumed->waited_s > 30);
+        }
+    }
+    std::filesystem::remove(file + ".journal");
+}
+
+TEST_CASE("resumption 2: no journal, or another file, is refused") {
+    const config::Printer printer = config::generic_printer();
+    const std::string file = write_print("resume_other", {draw_square, draw_arcs});
+    std::filesystem::remove(file + ".journal");
+    const auto refusal = [&] {
+        const Result<Resumption> found = find_resumption(printer, file);
+        REQUIRE_FALSE(found.ok());
+        CHECK(found.error().status == ExitStatus::input);
+        return found.error().message;
+    };
+    CHECK(refusal().find("no journal") != std::string::npos);
+    write_entry(file, 2);
+    CHECK(find_resumption(printer, file).ok());
+    write_print("resume_other", {draw_square, draw_circles});
+    CHECK(refusal().find("changed") != std::string::npos);
+    write_print("resume_other", {draw_square, draw_arcs});
+    CHECK(find_resumption(printer, file).ok());
+    std::filesystem::resize_file(file + ".journal", 20);
+    CHECK(refusal().find("no journal") != std::string::npos);
+    std::filesystem::remove(file + ".journal");
+    config::Printer elsewhere = printer;
+    elsewhere.recovery_folder = "/var/lib/lyr";
+    CHECK(journal_path(elsewhere, "/home/a/part.lyr") == "/var/lib/lyr/part.lyr.journal");
+}
+
+TEST_CASE(
+    "print 7: a print that is killed at any time leaves a journal; done or cancelled leaves none") {
+    const config::Printer printer = patient_printer();
+    const std::string file = write_print("journalled", std::vector<Drawing>(3, draw_small));
+    const std::string journal = file + ".journal";
+    std::filesystem::remove(journal);
+    const auto print_with = [&](PrintControl& control, ProgressSink progress) {
+        gpio::MonotonicClock clock;
+        gpio::MockChip chip(line_count, clock, {});
+        PrintJob job{file, printer, false, std::move(progress)};
+        job.control = &control;
+        job.journal = journal;
+        Result<PrintReport> report = print(job, chip, clock);
+        CHECK(chip.released());
+        return report;
+    };
+    PrintControl done, killed, cancelled;
+    CHECK(print_with(done, {}).ok());
+    CHECK_FALSE(std::filesystem::exists(journal));
+    CHECK(done.status().state == PrintState::done);
+    CHECK(done.status().layer == 3);
+    bool sent = false;
+    const Result<PrintReport> stopped = print_with(killed, [&](const Progress& now) {
+        if (now.layer >= 2 && !sent) std::raise(SIGTERM), sent = true;
+    });
+    REQUIRE_FALSE(stopped.ok());
+    CHECK(killed.status().state == PrintState::failed);
+    CHECK(killed.status().is_position_known);
+    const Result<Resumption> found = find_resumption(printer, file);
+    REQUIRE(found.ok());
+    CHECK(found->first_layer + 1 >= 2);
+    CHECK(found->first_layer + 1 == killed.status().layer);
+    const Result<PrintReport> ended = print_with(cancelled, [&](const Progress& now) {
+        if (now.layer >= 2) cancelled.post(Cancel{});
+    });
+    REQUIRE_FALSE(ended.ok());
+    CHECK(ended.error().message.find("cancelled") != std::string::npos);
+    CHECK_FALSE(std::filesystem::exists(journal));
+}
+
+TEST_CASE("print 7: a journal that cannot be written is a warning, and the print is made") {
+    const config::Printer printer = patient_printer();
+    const std::string file = write_print("no_journal", {draw_small});
+    gpio::MonotonicClock clock;
+    gpio::MockChip chip(line_count, clock, {});
+    PrintJob job{file, printer, false, {}};
+    job.journal = "/nonexistent/folder/journal";
+    const Result<PrintReport> report = print(job, chip, clock);
+    REQUIRE(report.ok());
+    REQUIRE_FALSE(report->warnings.empty());
+    CHECK(report->warnings[0].severity == Severity::warning);
+    CHECK(report->warnings[0].message.find("cannot be resumed") != std::string::npos);
+    PrintControl control;
+    job.control = &control;
+    job.journal = "/dev/full";
+    gpio::MockChip again(line_count, clock, {});
+    CHECK(print(job, again, clock).ok());
+    CHECK(control.status().message.find("cannot write the journal") != std::string::npos);
+}
+
+TEST_CASE("print 6: pauses, in a real print's threads, leave the path as it is") {
+    const config::Printer printer = patient_printer();
+    const std::string file = write_print("paused", std::vector<Drawing>(2, draw_small));
+    const auto path_of = [&](bool pauses) {
+        gpio::MonotonicClock clock;
+        std::vector<gpio::LineWrite> writes;
+        gpio::MockChip chip(line_count, clock, gpio::recorder(writes));
+        PrintControl control;
+        int calls = 0;
+        PrintJob job{file, printer, false, [&](const Progress&) {
+                         ++calls;
+                         if (pauses && calls == 1) control.post(Pause{});
+                         if (control.status().state == PrintState::paused) control.post(Resume{});
+                     }};
+        job.control = &control;
+        const Result<PrintReport> report = print(job, chip, clock);
+        REQUIRE_MESSAGE(report.ok(), (report.ok() ? "" : report.error().message));
+        CHECK((report->paused_s > 0.1) == pauses);
+        CHECK(control.status().state == PrintState::done);
+        StepPositions at{};
+        gpio::LineMask before = 0;
+        for (const gpio::LineWrite& write : writes) {
+            for (std::size_t i = 0; i < at.size(); ++i)
+                if (~before & write.levels & step_bit(i))
+                    at[i] += (write.levels & direction_bit(i)) != 0 ? 1 : -1;
+            before = write.levels;
+        }
+        return std::pair(at, writes.size());
+    };
+    const auto [plain_end, plain_writes] = path_of(false);
+    const auto [paused_end, paused_writes] = path_of(true);
+    CHECK(plain_end == paused_end);
+    CHECK(paused_writes > plain_writes + 200);
+}
