@@ -1,11 +1,11 @@
-# make            builds stepc, lyrrun and lyrview into build/ (installs missing Debian packages first)
+# make            builds stepc, lyrrun, lyrctl and lyrview into build/ (installs missing Debian packages first)
 # make demo       slices the gearbox base, simulates the print, draws a layer and a page: all into demo/
 # make test       builds and runs every test
 # make test-bits  a million random bits of a large print flipped, one at a time: both readers find each
 # make sanitize   the same tests under the address and undefined-behaviour sanitizers, into build-sanitize/
 # make test-klipper KLIPPER=checkout   both show pieces as G-code through Klipper's own batch mode (needs: tools/setup
 #                 --klipper); docs/exports.md
-# make board      only what a printer's board needs (lyrrun, lyrview), into build-board/
+# make board      only what a printer's board needs (lyrrun, lyrctl, lyrview), into build-board/
 # make bench      speed beside OpenCASCADE's and PrusaSlicer's, into build-bench/ (needs: tools/setup --bench);
 #                 LYR_BENCH_FILES=folder of STEP files to read
 # make install    into PREFIX (default /usr/local)
@@ -22,7 +22,7 @@ CTEST   = ctest --output-on-failure -j $(JOBS)
 
 all: setup
 	cmake -S . -B $(BUILD) -DCMAKE_BUILD_TYPE=Release
-	cmake --build $(BUILD) -j $(JOBS) --target stepc lyrrun lyrview lyr_format_c
+	cmake --build $(BUILD) -j $(JOBS) --target stepc lyrrun lyrctl lyrview lyr_format_c
 
 setup:
 	@tools/setup

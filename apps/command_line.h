@@ -1,4 +1,4 @@
-// What the command lines of the three programs have in common: main(), options and their messages.
+// What the command lines of the programs have in common: main(), options and their messages.
 
 #pragma once
 

@@ -7,11 +7,13 @@
 #include "apps/command_line.h"
 #include "apps/files.h"
 #include "apps/lyrrun_place.h"
+#include "apps/print_server.h"
 #include "apps/printer_file.h"
 #include "apps/progress_line.h"
 #include "apps/signal_watch.h"
 #include "base/read_text.h"
 #include "base/text.h"
+#include "target/run/dry_run.h"
 #include "target/run/print.h"
 #include "target/run/resumption.h"
 #include "target/run/simulate.h"
@@ -31,6 +33,8 @@ struct Arguments {
     std::optional<Tune> tune;
     PlaceArguments place;
     bool simulate = false, json = false, no_heat = false, resume = false, resumable = false;
+    bool dry_run = false;
+    std::string socket;
 };
 
 constexpr Program program{
@@ -43,6 +47,7 @@ constexpr Program program{
     "GTKWave\n"
     "  lyrrun part.lyr --printer printer.toml             print\n"
     "  lyrrun part.lyr --printer printer.toml --no-heat   move the machine, heaters off\n"
+    "  lyrrun part.lyr --dry-run                          try that without a board, in real time\n"
     "  lyrrun --printer printer.toml --tune tool=210      find a heater's kp, ki and kd\n"
     "  lyrrun part.lyr --simulate --faults faults.txt     see what the guards do about faults\n"
     "  lyrrun --printer printer.toml --home               find where the head is\n"
@@ -58,6 +63,7 @@ constexpr Program program{
     "path and releases all lines; a second\n"
     "Ctrl-C does so at once. Whatever ends it, all heaters go off. docs/configuration.md explains\n"
     "printer.toml, docs/algorithms/heat.md the guards and the file of faults.\n"
+    "lyrctl shows and controls a print (docs/control-protocol.md).\n"
     "What is reported goes to standard error where the trace goes to standard output.\n"
     "Exit status: 0 done, 2 options, 3 input, 4 not supported yet, 6 output, 7 the machine cannot\n"
     "or did not do it, 8 stopped on request.\n"};
@@ -87,6 +93,10 @@ void add_options(CLI::App& app, Arguments& arguments) {
     add_flag(app, "--json", arguments.json, "Report the simulation as one JSON object");
     add_flag(app, "--no-heat", arguments.no_heat,
              "Pass over the temperatures and fans that the file sets");
+    add_flag(app, "--dry-run", arguments.dry_run,
+             "Print without a board, in real time: lines lead nowhere, heaters are models");
+    add_file(app, "--socket", arguments.socket,
+             "Where lyrctl reaches the print  [/run/lyr/NAME.sock]");
     add_file(app, "--faults", arguments.faults_path,
              "Break heaters and sensors of the simulation: one TIME_S FAULT HEATER a line; -: "
              "standard input");
@@ -233,20 +243,28 @@ Status print(const Arguments& arguments, const config::Printer& printer) {
     Result<std::optional<run::Resumption>> resumption = resumption_of(arguments, printer);
     if (!resumption) return resumption.error();
     ProgressLine line;
+    run::PrintControl control;
+    run::PrintStatus before;
+    before.file = arguments.lyr_path;
+    control.publish(before);
+    Result<PrintServer> server = PrintServer::open(arguments.socket, printer, control);
+    if (!server) return server.error();
     run::PrintJob job{arguments.lyr_path, printer, arguments.no_heat, shown_on(line)};
     if (home::homes_before_print(printer))
         job.before = [&printer](gpio::GpioChip& chip, gpio::Clock& clock) {
             const run::StopSignals signals;
             return home::home_before_print(printer, chip, clock, signals);
         };
-    job.journal = run::journal_path(printer, arguments.lyr_path);
+    if (!arguments.dry_run) job.journal = run::journal_path(printer, arguments.lyr_path);
     job.resumption = std::move(*resumption);
-    const Result<run::PrintReport> report = run::print(job);
+    job.control = &control;
+    job.begun = [&] { show(program, server->start()); };
+    const Result<run::PrintReport> report = arguments.dry_run ? run::dry_run(job) : run::print(job);
     line.clear();
     if (!report) return report.error();
     show(program, report->warnings);
-    return tell(arguments.lyr_path + " printed on \"" + printer.name + "\"\n" +
-                run::text_of(*report));
+    return tell(arguments.lyr_path + (arguments.dry_run ? " tried on \"" : " printed on \"") +
+                printer.name + "\"\n" + run::text_of(*report));
 }
 
 // What makes no sense together.
@@ -273,6 +291,8 @@ Status check_together(const Arguments& arguments) {
     }
     if (!arguments.simulate && !arguments.faults_path.empty())
         return usage("--faults needs --simulate");
+    if ((arguments.dry_run || !arguments.socket.empty()) && (arguments.simulate || arguments.tune))
+        return usage("--dry-run and --socket go with a print, not with --simulate or --tune");
     if (!arguments.simulate && !arguments.script_path.empty())
         return usage("--script needs --simulate");
     if (arguments.resume && arguments.resumable)
@@ -291,8 +311,8 @@ Status work(const Arguments& arguments) {
     // The whole file is checked before the first motion, and then read again.
     if (arguments.lyr_path == "-")
         return usage("a print is read more than once: give a file, not standard input");
-    if (!arguments.simulate && arguments.printer_path.empty())
-        return usage("without --simulate, --printer FILE must say what the machine is");
+    if (!arguments.simulate && !arguments.dry_run && arguments.printer_path.empty())
+        return usage("without --simulate and --dry-run, --printer FILE must say what the machine is");
     if (!arguments.simulate && (!arguments.trace_path.empty() || arguments.json))
         return usage("--trace and --json need --simulate");
     if (const Status apart = check_apart({{"the print", arguments.lyr_path},

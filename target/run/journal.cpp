@@ -19,6 +19,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "base/file_place.h"
 #include "format/crc32c.h"
 
 namespace lyr::run {
@@ -163,7 +164,8 @@ Status Journal::write(const JournalEntry& entry) {
 }
 
 void Journal::remove() {
-    (void)::unlink(path_.c_str());
+    // A device that stands in for it is not ours.
+    if (is_regular_file(path_)) (void)::unlink(path_.c_str());
 }
 
 JournalWriter::JournalWriter(Journal journal)

@@ -357,6 +357,7 @@ Result<PrintReport> run(const PrintJob& job, const Prepared& prepared, gpio::Gpi
     const std::unique_ptr<JournalWriter> journal = journal_for(job, identity, report.warnings);
     life.keep_journal(journal.get(), identity);
     lock_memory(report.warnings);
+    if (job.begun) job.begun();
     Tending tending(heating, shared);
     std::thread planner([&] { running.outcome.planned = fill(*stream, shared); });
     std::thread edges([&] { drive(running, chip, report.warnings); });
@@ -391,6 +392,7 @@ Result<std::optional<Buttons>> open_buttons(const config::Printer& printer) {
 
 Result<PrintReport> print(const PrintJob& job, gpio::GpioChip& chip, gpio::Clock& clock,
                           Heating* heating, Buttons* buttons) {
+    keep_stacks_small();
     const Result<Prepared> prepared = prepare(job);
     if (!prepared) return prepared.error();
     if (!heating && !job.no_heat && !prepared->inspection.demands.hottest.empty())
@@ -399,6 +401,7 @@ Result<PrintReport> print(const PrintJob& job, gpio::GpioChip& chip, gpio::Clock
 }
 
 Result<PrintReport> print(const PrintJob& job) {
+    keep_stacks_small();
     const Result<Prepared> prepared = prepare(job);
     if (!prepared) return prepared.error();
     const Result<std::vector<gpio::LineRequest>> requests = line_requests(job.printer);

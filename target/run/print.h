@@ -40,7 +40,9 @@ struct PrintJob {
     // What is done on the lines before the print, such as homing: the motors are to stay on and the head at start_mm.
     std::function<Status(gpio::GpioChip&, gpio::Clock&)> before{};
     PrintControl* control = nullptr;  // none: only signals and buttons do something
-    std::string journal{};            // its path; empty: none
+    // Called once, when all lines are held; from here on threads may be started.
+    std::function<void()> begun{};
+    std::string journal{};  // its path; empty: none
     std::optional<Resumption> resumption{};
     bool is_lifted = false;  // for the resumption, and at start_mm in x and y: homed
 };

@@ -11,7 +11,8 @@ bool PrintControl::post(const Command& command) {
     if (is_emergency) stop_requests_ += at_once;
     const std::lock_guard lock(mutex_);
     if (is_emergency) {
-        waiting_.push_front(command);
+        // One is enough, however often it is asked for.
+        if (waiting_.empty() || waiting_.front() != command) waiting_.push_front(command);
         return true;
     }
     if (waiting_.size() >= most_waiting) return false;

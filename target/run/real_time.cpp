@@ -12,6 +12,10 @@
 namespace lyr::run {
 namespace {
 
+// Of threads: what is locked is real memory, and the usual 8 MiB of each would be most of what the
+// program has. None of them goes deep.
+constexpr std::size_t stack_bytes = std::size_t{1} << 19;
+
 // Above everything that is not the kernel's own: its interrupt threads have 50.
 constexpr int precedence = 49;
 
@@ -23,6 +27,14 @@ Diagnostic refused(const std::string& what, int error, const std::string& remedy
 }
 
 }  // namespace
+
+void keep_stacks_small() {
+    pthread_attr_t attributes;
+    if (::pthread_attr_init(&attributes) != 0) return;
+    if (::pthread_attr_setstacksize(&attributes, stack_bytes) == 0)
+        (void)::pthread_setattr_default_np(&attributes);
+    ::pthread_attr_destroy(&attributes);
+}
 
 void lock_memory(Diagnostics& warnings) {
     if (::mlockall(MCL_CURRENT | MCL_FUTURE) != 0)

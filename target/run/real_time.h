@@ -9,6 +9,9 @@
 
 namespace lyr::run {
 
+// Of the threads that are started from here on.
+void keep_stacks_small();
+
 // Keeps the memory of the whole process, present and future, in place: a page fault would cost
 // milliseconds.
 void lock_memory(Diagnostics& warnings);

@@ -129,6 +129,14 @@ public:
         return false;
     }
 
+    // Memory that is in place.
+    long resident_kb() const {
+        std::ifstream status("/proc/" + std::to_string(process_) + "/status");
+        for (std::string line; std::getline(status, line);)
+            if (line.starts_with("VmRSS:")) return std::stol(line.substr(6));
+        return -1;
+    }
+
     // The exit status after the signal; -1 if the signal killed it.
     int end(int signal) const {
         ::kill(process_, signal);

@@ -11,25 +11,11 @@ lyr.page = (() => {
 
     const byId = (id) => document.getElementById(id);
 
-    function readTheme() {
-        const style = getComputedStyle(document.documentElement);
-        const of = (name) => style.getPropertyValue(`--${name}`).trim();
-        const family = style.fontFamily;
-        return {
-            name: matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light",
-            stage: of("stage"), card: of("card"), text: of("text"), faintText: of("faint"), ruling: of("ruling"),
-            accent: of("accent"), travel: of("travel"), wipe: of("wipe"),
-            stageRgb: lyr.colors.rgb(of("stage")), bedRgb: lyr.colors.rgb(of("bed")),
-            travelRgb: lyr.colors.rgb(of("travel")),
-            font: `12px ${family}`, strongFont: `600 12px ${family}`,
-        };
-    }
-
     class Page {
         constructor(print) {
             const last = print.layerCount - 1;
             this.print = print;
-            this.theme = readTheme();
+            this.theme = lyr.theme.read();
             this.state = {
                 view: "plan", high: last, low: 0, lows: {plan: null, space: 0}, travels: false, below: true,
                 time_s: print.schedule.total_s, whole: true, playing: false, factor: 20, revision: 0,
@@ -86,7 +72,7 @@ lyr.page = (() => {
             lyr.keys.fillHelp(byId("help"));
             new ResizeObserver(() => this.resize()).observe(byId("stage"));
             matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
-                this.theme = readTheme();
+                this.theme = lyr.theme.read();
                 this.request();
             });
             if (innerWidth <= narrow_px) this.togglePanel();

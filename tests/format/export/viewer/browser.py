@@ -82,7 +82,10 @@ class Browser:
     def open(self, path, fragment=""):
         """Anew, even if it is the page that is shown."""
         self.opened += 1
-        self._send("POST", self.session + "/url", {"url": f"file://{os.path.abspath(path)}?{self.opened}{fragment}"})
+        self.go(f"file://{os.path.abspath(path)}?{self.opened}{fragment}")
+
+    def go(self, url):
+        self._send("POST", self.session + "/url", {"url": url})
 
     def run(self, script, *values):
         """The value of a JavaScript expression or, where there is a semicolon, of a function's body; promises are
