@@ -21,6 +21,7 @@ struct Pin {
     std::string chip;
     std::variant<std::uint32_t, std::string> line;
     bool active_low = false;
+    bool open_drain = false;
 };
 
 // Of Printer::heaters.

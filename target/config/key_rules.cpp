@@ -123,6 +123,8 @@ void append_pin(std::vector<Key>& keys, const std::string& path, const PinPlace&
     }));
     keys.push_back(flag(path + ".active_low",
                         [pin_of](Draft& draft, bool value) { pin_of(draft).active_low = value; }));
+    keys.push_back(flag(path + ".open_drain",
+                        [pin_of](Draft& draft, bool value) { pin_of(draft).open_drain = value; }));
 }
 
 }  // namespace lyr::config
