@@ -6,6 +6,7 @@
 
 #include "apps/command_line.h"
 #include "apps/files.h"
+#include "apps/lyrrun_place.h"
 #include "apps/printer_file.h"
 #include "apps/progress_line.h"
 #include "apps/signal_watch.h"
@@ -27,6 +28,7 @@ struct Arguments {
         double target_c = 0;
     };
     std::optional<Tune> tune;
+    PlaceArguments place;
     bool simulate = false, json = false, no_heat = false;
 };
 
@@ -42,9 +44,12 @@ constexpr Program program{
     "  lyrrun part.lyr --printer printer.toml --no-heat   move the machine, heaters off\n"
     "  lyrrun --printer printer.toml --tune tool=210      find a heater's kp, ki and kd\n"
     "  lyrrun part.lyr --simulate --faults faults.txt     see what the guards do about faults\n"
+    "  lyrrun --printer printer.toml --home               find where the head is\n"
+    "  lyrrun --printer printer.toml --jog x=10,z=5       and move it by so much\n"
     "\n"
     "A print takes the whole path from the file and starts with the head at start_mm of the\n"
-    "printer. Ctrl-C brings the head to rest on its path and releases all lines; a second\n"
+    "printer, which a printer with endstops finds by itself. Ctrl-C brings the head to rest on its "
+    "path and releases all lines; a second\n"
     "Ctrl-C does so at once. Whatever ends it, all heaters go off. docs/configuration.md explains\n"
     "printer.toml, docs/algorithms/heat.md the guards and the file of faults.\n"
     "What is reported goes to standard error where the trace goes to standard output.\n"
@@ -87,6 +92,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
             return std::nullopt;
         },
         "Find kp, ki and kd of a heater at a temperature, in place of a print");
+    add_place_options(app, arguments.place);
 }
 
 // "1:02:03"
@@ -142,10 +148,20 @@ Status tune(const Arguments& arguments, const config::Printer& printer) {
                 thermal::text_of(*result, name));
 }
 
+Status place(const Arguments& arguments, const config::Printer& printer) {
+    Result<std::vector<thermal::Fault>> faults = read_faults(arguments, printer);
+    if (!faults) return faults.error();
+    return work_place(program, arguments.place, {printer, arguments.simulate, std::move(*faults)});
+}
+
 Status simulate(const Arguments& arguments, const config::Printer& printer) {
     const SignalWatch watch(program.name);
     Result<std::vector<thermal::Fault>> faults = read_faults(arguments, printer);
     if (!faults) return faults.error();
+    if (home::homes_before_print(printer)) {
+        const auto homed = home::home({printer, true, *faults}, home::homable(printer), {});
+        if (!homed) return homed.error();
+    }
     ProgressLine line;
     run::SimulationJob job{arguments.lyr_path, printer, {}, shown_on(line), {}};
     job.no_heat = arguments.no_heat;
@@ -167,7 +183,12 @@ Status simulate(const Arguments& arguments, const config::Printer& printer) {
 
 Status print(const Arguments& arguments, const config::Printer& printer) {
     ProgressLine line;
-    const run::PrintJob job{arguments.lyr_path, printer, arguments.no_heat, shown_on(line)};
+    run::PrintJob job{arguments.lyr_path, printer, arguments.no_heat, shown_on(line)};
+    if (home::homes_before_print(printer))
+        job.before = [&printer](gpio::GpioChip& chip, gpio::Clock& clock) {
+            const run::StopSignals signals;
+            return home::home_before_print(printer, chip, clock, signals);
+        };
     const Result<run::PrintReport> report = run::print(job);
     line.clear();
     if (!report) return report.error();
@@ -178,12 +199,19 @@ Status print(const Arguments& arguments, const config::Printer& printer) {
 
 // What makes no sense together.
 Status check_together(const Arguments& arguments) {
-    if (arguments.tune) {
+    if (arguments.tune && arguments.place.given())
+        return usage("--tune goes without --home and --jog");
+    if (arguments.place.given()) {
+        if (!arguments.lyr_path.empty() || !arguments.trace_path.empty() || arguments.json ||
+            arguments.no_heat)
+            return usage("--home and --jog go without a print, --trace, --json and --no-heat");
+    } else if (arguments.tune) {
         if (!arguments.lyr_path.empty() || !arguments.trace_path.empty() || arguments.json ||
             arguments.no_heat)
             return usage("--tune goes without a print, --trace, --json and --no-heat");
     } else if (arguments.lyr_path.empty()) {
-        return usage("print is required, the .lyr file that stepc wrote, or --tune");
+        return usage(
+            "print is required, the .lyr file that stepc wrote, or --tune, --home or --jog");
     }
     if (!arguments.simulate && !arguments.faults_path.empty())
         return usage("--faults needs --simulate");
@@ -200,7 +228,7 @@ Status work(const Arguments& arguments) {
     if (arguments.lyr_path == "-")
         return usage("a print is read more than once: give a file, not standard input");
     if (!arguments.simulate && arguments.printer_path.empty())
-        return usage("to print or tune, --printer FILE must say what the machine is");
+        return usage("without --simulate, --printer FILE must say what the machine is");
     if (!arguments.simulate && (!arguments.trace_path.empty() || arguments.json))
         return usage("--trace and --json need --simulate");
     if (const Status apart = check_apart({{"the print", arguments.lyr_path},
@@ -212,6 +240,7 @@ Status work(const Arguments& arguments) {
     const Result<config::Printer> printer = read_printer(arguments.printer_path);
     if (!printer) return printer.error();
     if (arguments.tune) return tune(arguments, *printer);
+    if (arguments.place.given()) return place(arguments, *printer);
     return arguments.simulate ? simulate(arguments, *printer) : print(arguments, *printer);
 }
 

@@ -16,12 +16,16 @@
 
 namespace lyr::config {
 
+// What holds an input that nothing drives.
+enum class Pull : std::uint8_t { as_is, up, down, none };
+
 // A line of a GPIO chip.
 struct Pin {
     std::string chip;
     std::variant<std::uint32_t, std::string> line;
     bool active_low = false;
-    bool open_drain = false;
+    bool open_drain = false;  // of an output
+    Pull pull = Pull::as_is;  // of an input
 };
 
 // Of Printer::heaters.

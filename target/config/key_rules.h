@@ -26,7 +26,9 @@ Key required(Key key);
 
 // A line as number, name or table.
 using PinPlace = std::function<std::optional<Pin>&(Draft&)>;
-void append_pin(std::vector<Key>& keys, const std::string& path, const PinPlace& place);
+void append_output(std::vector<Key>& keys, const std::string& path, const PinPlace& place);
+// With its pull.
+void append_input(std::vector<Key>& keys, const std::string& path, const PinPlace& place);
 
 // A list of as many numbers as `values` has places; none if the node is anything else.
 template <std::size_t N>
@@ -40,6 +42,28 @@ std::optional<std::array<double, N>> numbers_in(const toml::node& node, Range ra
         values[i] = *value;
     }
     return values;
+}
+
+// One of a few names, stored as its number.
+template <std::size_t N>
+Key choice(std::string path, const std::array<std::string_view, N>& names,
+           const std::function<void(Draft&, std::size_t)>& store) {
+    return {std::move(path), false, false,
+            [&names, store](const toml::node& node, Draft& draft) -> Complaint {
+                const std::optional<std::string> value = node.value<std::string>();
+                std::string expected = "expected ";
+                for (std::size_t i = 0; i < N; ++i) {
+                    if (value && *value == names[i]) {
+                        store(draft, i);
+                        return std::nullopt;
+                    }
+                    expected += (i == 0      ? "\""
+                                 : i + 1 < N ? "\", \""
+                                             : "\" or \"") +
+                                std::string(names[i]);
+                }
+                return expected + '"';
+            }};
 }
 
 }  // namespace lyr::config

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "target/config/homing_keys.h"
 #include "target/config/key_rules.h"
 #include "target/config/machine_keys.h"
 
@@ -64,9 +65,9 @@ void append_axis(std::vector<Key>& keys, std::size_t i) {
             return draft.printer.axes[i].*field;
         };
     };
-    append_pin(keys, axis + "step", line(&Axis::step));
-    append_pin(keys, axis + "direction", line(&Axis::direction));
-    append_pin(keys, axis + "enable", line(&Axis::enable));
+    append_output(keys, axis + "step", line(&Axis::step));
+    append_output(keys, axis + "direction", line(&Axis::direction));
+    append_output(keys, axis + "enable", line(&Axis::enable));
 }
 
 }  // namespace
@@ -77,6 +78,9 @@ std::vector<Key> printer_keys() {
         text("name", [](Draft& d, const std::string& value) { d.printer.name = value; }));
     append_machine_keys(keys);
     keys.push_back(text("chip", [](Draft& d, const std::string& value) { d.chip = value; }));
+    keys.push_back(text("calibration_file", [](Draft& d, const std::string& value) {
+        d.printer.calibration_file = value;
+    }));
     keys.push_back(start_key());
     keys.push_back(number("junction_deviation_mm", {0, 1},
                           [](Draft& d, double v) { d.printer.junction_deviation_mm = v; }));
@@ -93,6 +97,7 @@ std::vector<Key> printer_keys() {
         nanoseconds("pulse.late_limit_ms", {0.01, 10'000}, ns_per_ms, &PulseTiming::late_limit_ns));
     for (std::size_t i = 0; i < axis_count; ++i) append_axis(keys, i);
     append_heat_keys(keys);
+    append_homing_keys(keys);
     return keys;
 }
 

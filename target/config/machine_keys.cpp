@@ -32,32 +32,9 @@ Key towers_key(std::string path, Range range, std::array<double, 3> DeltaFrame::
             }};
 }
 
-template <std::size_t N>
-std::string choice_of(const std::array<std::string_view, N>& names) {
-    std::string text = "expected ";
-    for (std::size_t i = 0; i < N; ++i)
-        text += (i == 0 ? "\"" : i + 1 < N ? "\", \"" : "\" or \"") + std::string(names[i]);
-    return text + '"';
-}
-
-template <std::size_t N>
-Key choice_key(std::string path, const std::array<std::string_view, N>& names,
-               const std::function<void(Draft&, std::size_t)>& store) {
-    return {std::move(path), false, false,
-            [&names, store](const toml::node& node, Draft& draft) -> Complaint {
-                const std::optional<std::string> value = node.value<std::string>();
-                for (std::size_t i = 0; value && i < N; ++i)
-                    if (*value == names[i]) {
-                        store(draft, i);
-                        return std::nullopt;
-                    }
-                return choice_of(names);
-            }};
-}
-
 void append_shaper(std::vector<Key>& keys, std::size_t axis) {
     const std::string path = "shaper." + std::string(axis_names[axis]) + '.';
-    keys.push_back(choice_key(path + "kind", shaper_names, [axis](Draft& d, std::size_t kind) {
+    keys.push_back(choice(path + "kind", shaper_names, [axis](Draft& d, std::size_t kind) {
         d.printer.shapers[axis].kind = static_cast<ShaperKind>(kind);
     }));
     // Below, the copies of a motion are a second apart; above, no frame of a printer vibrates.
@@ -96,7 +73,7 @@ void append_delta_problems(const Printer& printer,
 }  // namespace
 
 void append_machine_keys(std::vector<Key>& keys) {
-    keys.push_back(choice_key("kinematics", kinematics_names, [](Draft& d, std::size_t kind) {
+    keys.push_back(choice("kinematics", kinematics_names, [](Draft& d, std::size_t kind) {
         d.printer.kinematics = static_cast<Kinematics>(kind);
     }));
     keys.push_back(number("max_jerk_mm_s3", {0, 1e9},

@@ -4,6 +4,8 @@
 
 #include "target/config/printer.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
@@ -13,6 +15,7 @@
 #include <set>
 
 #include "base/nearest_name.h"
+#include "target/config/homing_keys.h"
 #include "target/config/keys.h"
 #include "target/config/machine_keys.h"
 
@@ -150,6 +153,10 @@ std::vector<std::pair<std::string, std::optional<Pin>*>> lines_of(Printer& print
             lines.emplace_back("heater." + std::string(heater_names[i]) + ".output",
                                &heater->output);
     if (printer.part_fan) lines.emplace_back("fan.part.output", &printer.part_fan->output);
+    for (std::size_t i = 0; i < printer.endstops.size(); ++i)
+        lines.emplace_back("axis." + std::string(axis_names[i]) + ".endstop",
+                           &printer.endstops[i].input);
+    if (printer.probe) lines.emplace_back("probe.input", &printer.probe->input);
     return lines;
 }
 
@@ -211,8 +218,9 @@ void Walk::check_pulses() {
 
 void Walk::check_machine() {
     const auto given = [this](const std::string& path) { return places_.count(path) != 0; };
-    for (const auto& [path, message] : machine_problems(draft_.printer, given))
-        problem(place(path), path + message);
+    for (const auto& problems :
+         {machine_problems(draft_.printer, given), homing_problems(draft_.printer, given)})
+        for (const auto& [path, message] : problems) problem(place(path), path + message);
 }
 
 const std::pair<Place, std::string>* Walk::first_problem() const {
@@ -242,15 +250,42 @@ Result<std::string> read_text(const std::string& path) {
     return text;
 }
 
-}  // namespace
-
-Result<Printer> parse_printer(std::string_view text, const std::string& file) {
+Status take(Walk& walk, std::string_view text, const std::string& file) {
     const toml::parse_result parsed = toml::parse(text, file);
     if (!parsed)
         return input_error(std::string(parsed.error().description()), file,
                            place_of(parsed.error().source()));
-    Walk walk;
     walk.table(parsed.table(), "");
+    return Done{};
+}
+
+// What was measured stands above what the printer's file says.
+Status take_calibration(Draft& draft, const std::string& printer_file) {
+    std::string& path = draft.printer.calibration_file;
+    if (path.empty()) return Done{};
+    if (path.find('/') == std::string::npos)
+        path = printer_file.substr(0, printer_file.rfind('/') + 1) + path;
+    const std::string file = path;
+    if (::access(file.c_str(), F_OK) != 0 && errno == ENOENT) return Done{};
+    const Result<std::string> text = read_text(file);
+    if (!text) return text.error();
+    Walk walk;
+    std::swap(walk.draft(), draft);
+    if (Status taken = take(walk, *text, file); !taken) return taken;
+    if (const auto* problem = walk.first_problem())
+        return input_error(problem->second, file, problem->first);
+    std::swap(walk.draft(), draft);
+    if (path == file) return Done{};
+    return input_error("calibration_file: a calibration does not name another one", file);
+}
+
+}  // namespace
+
+Result<Printer> parse_printer(std::string_view text, const std::string& file) {
+    Walk walk;
+    if (Status taken = take(walk, text, file); !taken) return taken.error();
+    if (!walk.first_problem())
+        if (Status taken = take_calibration(walk.draft(), file); !taken) return taken.error();
     // A mistyped key is missing too; only the slip itself is worth telling.
     if (!walk.first_problem()) walk.check_missing();
     walk.check_lines();

@@ -12,7 +12,9 @@
 //  4. No two lines of a Printer are the same line of the same chip.
 //  5. known_keys() lists every key that a file may have, "axis.*." standing for each axis.
 //  6. No input makes it crash.
-//  7. A delta's arms reach the whole of its reach_mm, at flattest_arm_share of their length at the most, and
+//  7. A file that calibration_file names has keys of the same kind, which stand above those of the printer's file; it need
+//     not be there yet. A name without a slash is one beside the printer's file.
+//  8. A delta's arms reach the whole of its reach_mm, at flattest_arm_share of their length at the most, and
 //     its start lies within.
 
 #pragma once
@@ -27,6 +29,7 @@
 
 #include "base/diagnostic.h"
 #include "target/config/heater.h"
+#include "target/config/homing.h"
 
 namespace lyr::config {
 
@@ -88,6 +91,12 @@ struct Printer {
     std::array<Axis, axis_count> axes;
     std::array<std::optional<Heater>, heater_count> heaters;
     std::optional<Fan> part_fan;
+    std::array<Endstop, 3> endstops;  // of x, y and z, or of a delta's towers
+    Homing homing;
+    std::optional<Probe> probe;
+    BedMesh mesh;
+    SimulatedMachine simulated;
+    std::string calibration_file;  // empty: none
 };
 
 // A middling Cartesian printer without lines and with room for any part, to simulate without a file.

@@ -65,6 +65,65 @@ double carriage_mm(const Delta::Tower& tower, const Point& head) {
     return head.z + std::sqrt((tower.arm_mm - off_mm) * (tower.arm_mm + off_mm));
 }
 
+namespace {
+
+Point minus(const Point& a, const Point& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+double dot(const Point& a, const Point& b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+Point cross(const Point& a, const Point& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+Point sum(const Point& from, double a, const Point& u, double b, const Point& v) {
+    return {from.x + a * u.x + b * v.x, from.y + a * u.y + b * v.y, from.z + a * u.z + b * v.z};
+}
+
+// Where three spheres about the carriages meet: in the plane of their centres, the point of equal power to all
+// three, and from there down at a right angle.
+Point head_at(const Delta& delta, const std::array<double, 3>& motors_mm) {
+    std::array<Point, 3> joint;
+    for (std::size_t i = 0; i < joint.size(); ++i)
+        joint[i] = {delta.towers[i].x_mm, delta.towers[i].y_mm, motors_mm[i]};
+    const Point u = minus(joint[1], joint[0]), v = minus(joint[2], joint[0]);
+    const double r0 = delta.towers[0].arm_mm * delta.towers[0].arm_mm;
+    const auto power = [&](std::size_t i, const Point& way) {
+        return (r0 - delta.towers[i].arm_mm * delta.towers[i].arm_mm + dot(way, way)) / 2;
+    };
+    const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v);
+    const double pu = power(1, u), pv = power(2, v);
+    const double size = uu * vv - uv * uv;
+    const double a = (pu * vv - pv * uv) / size, b = (pv * uu - pu * uv) / size;
+    const Point foot = sum(joint[0], a, u, b, v);
+    const Point way = minus(foot, joint[0]);
+    const Point normal = cross(u, v);
+    const double down = (normal.z > 0 ? -1 : 1) * std::sqrt((r0 - dot(way, way)) / size);
+    return sum(foot, down, normal, 0, normal);
+}
+
+}  // namespace
+
+std::array<double, 3> motors_at(const Kinematics& kinematics, const Point& head) {
+    if (std::holds_alternative<CoreXy>(kinematics))
+        return {head.x + head.y, head.x - head.y, head.z};
+    std::array<double, 3> motors_mm{head.x, head.y, head.z};
+    if (const auto* delta = std::get_if<Delta>(&kinematics))
+        for (std::size_t i = 0; i < motors_mm.size(); ++i)
+            motors_mm[i] = carriage_mm(delta->towers[i], head);
+    return motors_mm;
+}
+
+Point head_at(const Kinematics& kinematics, const std::array<double, 3>& motors_mm) {
+    const auto& [a, b, c] = motors_mm;
+    if (std::holds_alternative<CoreXy>(kinematics)) return {(a + b) / 2, (a - b) / 2, c};
+    if (const auto* delta = std::get_if<Delta>(&kinematics)) return head_at(*delta, motors_mm);
+    return {a, b, c};
+}
+
 MotorPaths motor_paths(const LinearKinematics& kinematics, const Path& path, const Point& origin) {
     const auto& steps = std::visit(
         [](const auto& kind) -> const auto& { return kind.steps_per_mm; }, kinematics);

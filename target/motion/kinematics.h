@@ -7,7 +7,9 @@
 //  2. The extruder's motor counts from the begin of each path: what went before is the caller's to
 //     add.
 //  3. A motor with negative steps_per_mm turns the other way round; with 0 it never moves.
-//  4. carriage_mm() is exact to rounding where the arm reaches; elsewhere it is not a number.
+//  4. head_at() undoes that: where the head is when the motors have that many mm; of a delta the lower of the two
+//     places, not a number where there is none.
+//  5. carriage_mm() is exact to rounding where the arm reaches; elsewhere it is not a number.
 
 #pragma once
 
@@ -77,6 +79,10 @@ const std::array<double, axis_count>& steps_per_mm(const Kinematics& kinematics)
 // How much of x, y and z is in a motor of the first three.
 using AxisShares = std::array<double, 3>;
 AxisShares axis_shares(const LinearKinematics& kinematics, std::size_t motor);
+
+// What the motors of x, y and z follow, in mm.
+std::array<double, 3> motors_at(const Kinematics& kinematics, const Point& head);
+Point head_at(const Kinematics& kinematics, const std::array<double, 3>& motors_mm);
 
 // Height of a carriage when the head is at a point.
 double carriage_mm(const Delta::Tower& tower, const Point& head);

@@ -225,6 +225,10 @@ Result<PrintReport> print(const PrintJob& job) {
     if (!requests) return requests.error();
     const Result<std::unique_ptr<gpio::GpioChip>> chip = gpio::open_gpiod_chip(*requests);
     if (!chip) return chip.error();
+    gpio::MonotonicClock clock;
+    // Before the heaters: their keeper is a process of its own, which expects to hear of them.
+    if (job.before)
+        if (Status ready = job.before(**chip, clock); !ready) return ready.error();
     std::optional<Heating> heating;
     const Demands& demands = prepared->inspection.demands;
     if (!job.no_heat && !demands.hottest.empty()) {
@@ -232,7 +236,6 @@ Result<PrintReport> print(const PrintJob& job) {
         if (!opened) return opened.error();
         heating.emplace(std::move(*opened));
     }
-    gpio::MonotonicClock clock;
     return run(job, *prepared, **chip, clock, heating ? &*heating : nullptr);
 }
 

@@ -29,6 +29,8 @@ struct PrintJob {
     config::Printer printer;
     bool no_heat = false;
     ProgressSink progress;
+    // What is done on the lines before the print, such as homing: the motors are to stay on and the head at start_mm.
+    std::function<Status(gpio::GpioChip&, gpio::Clock&)> before{};
 };
 
 struct PrintReport {

@@ -17,7 +17,7 @@ struct Word {
     FaultKind kind;
     bool has_value = false;
 };
-constexpr std::array<Word, 12> words{{{"open", FaultKind::open},
+constexpr std::array<Word, 16> words{{{"open", FaultKind::open},
                                       {"short", FaultKind::shorted},
                                       {"detach", FaultKind::detached},
                                       {"freeze", FaultKind::frozen},
@@ -28,11 +28,36 @@ constexpr std::array<Word, 12> words{{{"open", FaultKind::open},
                                       {"weak", FaultKind::weak, true},
                                       {"draught", FaultKind::draught, true},
                                       {"silent", FaultKind::silent},
-                                      {"mend", FaultKind::mend}}};
+                                      {"mend", FaultKind::mend},
+                                      {"stuck", FaultKind::stuck},
+                                      {"dead", FaultKind::dead},
+                                      {"bounce", FaultKind::bounce, true},
+                                      {"lose", FaultKind::lose, true}}};
 
 // What is wrong with a line, without its place.
 using Complaint = std::string;
 using Parsed = std::variant<Fault, Complaint>;
+
+Complaint take_heater(const std::string& name, const config::Printer& printer, Fault& fault) {
+    const auto& names = config::heater_names;
+    const auto known = std::find(names.begin(), names.end(), name);
+    fault.heater = static_cast<std::size_t>(known - names.begin());
+    if (known != names.end() && printer.heaters[fault.heater]) return {};
+    return "the printer has no heater " + in_quotes(name);
+}
+
+Complaint take_contact(const std::string& name, const config::Printer& printer, Fault& fault) {
+    const auto& names = config::contact_names;
+    const auto known = std::find(names.begin(), names.end(), name);
+    fault.contact = static_cast<std::size_t>(known - names.begin());
+    if (fault.kind == FaultKind::lose)
+        return fault.contact < printer.endstops.size() ? "" : "expected x, y or z";
+    const bool has =
+        known != names.end() && (fault.contact == config::contact_probe
+                                     ? printer.probe && printer.probe->input
+                                     : printer.endstops[fault.contact].input.has_value());
+    return has ? "" : "the printer has no endstop or probe " + in_quotes(name);
+}
 
 Parsed parse(const std::vector<std::string>& parts, const config::Printer& printer) {
     Fault fault;
@@ -50,17 +75,20 @@ Parsed parse(const std::vector<std::string>& parts, const config::Printer& print
                (nearest.empty() ? "" : "; did you mean `" + nearest + "`?");
     }
     fault.kind = word->kind;
-    const bool has_heater = fault.kind != FaultKind::silent;
-    const std::size_t expected = 2 + (has_heater ? 1 : 0) + (word->has_value ? 1 : 0);
+    const bool has_target = fault.kind != FaultKind::silent;
+    const bool of_contact = is_of_contact(fault.kind);
+    const std::size_t expected = 2 + (has_target ? 1 : 0) + (word->has_value ? 1 : 0);
     if (parts.size() != expected)
-        return "`" + parts[1] + "` takes " + (has_heater ? "a heater" : "nothing more") +
+        return "`" + parts[1] + "` takes " +
+               (!has_target  ? "nothing more"
+                : of_contact ? "an endstop's axis"
+                             : "a heater") +
                (word->has_value ? " and a value" : "");
-    if (!has_heater) return fault;
-    const auto& names = config::heater_names;
-    const auto name = std::find(names.begin(), names.end(), parts[2]);
-    fault.heater = static_cast<std::size_t>(name - names.begin());
-    if (name == names.end() || !printer.heaters[fault.heater])
-        return "the printer has no heater " + in_quotes(parts[2]);
+    if (!has_target) return fault;
+    if (Complaint complaint = of_contact ? take_contact(parts[2], printer, fault)
+                                         : take_heater(parts[2], printer, fault);
+        !complaint.empty())
+        return complaint;
     if (!word->has_value) return fault;
     const std::optional<double> value = finite_number(parts[3]);
     if (!value) return "expected a number, found " + in_quotes(parts[3]);
@@ -69,6 +97,11 @@ Parsed parse(const std::vector<std::string>& parts, const config::Printer& print
 }
 
 }  // namespace
+
+bool is_of_contact(FaultKind kind) {
+    return kind == FaultKind::stuck || kind == FaultKind::dead || kind == FaultKind::bounce ||
+           kind == FaultKind::lose;
+}
 
 Result<std::vector<Fault>> parse_faults(std::string_view text, const std::string& file,
                                         const config::Printer& printer) {
@@ -124,6 +157,10 @@ void apply(const Fault& fault, ModelFaults& faults) {
             faults.draught_w_k = fault.value;
             break;
         case FaultKind::silent:
+        case FaultKind::stuck:
+        case FaultKind::dead:
+        case FaultKind::bounce:
+        case FaultKind::lose:
             break;
         case FaultKind::mend:
             faults = {};

@@ -6,8 +6,9 @@
 //     400           silent
 //
 // Contract
-//  1. A line is a time, a fault, and for all but `silent` a heater that the printer has; weak, draught and jump
-//     take a value. What stands after # is a comment. Anything else is an error (status input) with its line.
+//  1. A line is a time, a fault, and for all but `silent` a heater or a contact (the endstop of x, y or z, or the probe)
+//     that the printer has; weak, draught, jump, bounce and lose take a value. What stands after # is a comment. Anything
+//     else is an error (status input) with its line.
 //  2. Faults come out in the order of time.
 
 #pragma once
@@ -35,6 +36,11 @@ enum class FaultKind : std::uint8_t {
     draught,     // `value` W/K are lost in addition
     silent,      // the control of the heaters hangs
     mend,        // all of the heater's faults end
+    // Of contacts and motors; target/home has the machine that they break.
+    stuck,   // the contact stays closed
+    dead,    // it does not close any more
+    bounce,  // it opens and closes for `value` ms
+    lose,    // the motor of the axis does not turn for `value` steps
 };
 
 struct Fault {
@@ -42,7 +48,10 @@ struct Fault {
     FaultKind kind = FaultKind::open;
     std::size_t heater = 0;
     double value = 0;
+    std::size_t contact = 0;  // of config
 };
+
+bool is_of_contact(FaultKind kind);
 
 Result<std::vector<Fault>> parse_faults(std::string_view text, const std::string& file,
                                         const config::Printer& printer);

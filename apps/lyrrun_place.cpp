@@ -1,0 +1,78 @@
+#include "apps/lyrrun_place.h"
+
+#include "apps/files.h"
+#include "base/text.h"
+
+namespace lyr::command_line {
+namespace {
+
+// "xz"; each axis once at the most.
+std::optional<home::AxisSet> axes_of(const std::string& letters) {
+    home::AxisSet axes;
+    for (const char letter : letters) {
+        const auto axis = static_cast<std::size_t>(letter - 'x');
+        if (letter < 'x' || letter > 'z' || axes[axis]) return std::nullopt;
+        axes.set(axis);
+    }
+    return axes;
+}
+
+// "x=10,z=-1"; each axis once at the most.
+std::optional<motion::Point> way_of(const std::string& text) {
+    motion::Point way;
+    std::string seen;
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t end = std::min(text.find(',', begin), text.size());
+        const std::string part = text.substr(begin, end - begin);
+        begin = end + 1;
+        if (part.size() < 3 || part[1] != '=' || seen.find(part[0]) != std::string::npos)
+            return std::nullopt;
+        const std::optional<double> value = finite_number(part.substr(2));
+        if (!value || part[0] < 'x' || part[0] > 'z') return std::nullopt;
+        seen += part[0];
+        (part[0] == 'x' ? way.x : part[0] == 'y' ? way.y : way.z) = *value;
+    }
+    return way;
+}
+
+}  // namespace
+
+void add_place_options(CLI::App& app, PlaceArguments& arguments) {
+    add_text(
+        app, "--home", "[AXES]",
+        [&arguments](const std::string& value) -> std::optional<std::string> {
+            arguments.home = axes_of(value);
+            if (!arguments.home) return "axes such as xyz";
+            return std::nullopt;
+        },
+        "Find where the head is, by endstops and probe, in place of a print; without AXES all "
+        "axes that have one")
+        ->expected(0, 1);
+    add_text(
+        app, "--jog", "x=MM,y=MM,z=MM",
+        [&arguments](const std::string& value) -> std::optional<std::string> {
+            arguments.jog_mm = way_of(value);
+            if (!arguments.jog_mm) return "axes with ways, such as x=10,z=-1";
+            return std::nullopt;
+        },
+        "Move the head by so much from the start of a print, in place of one; homes first where "
+        "the printer can");
+}
+
+Status work_place(const Program& program, const PlaceArguments& arguments, const home::Job& job) {
+    home::AxisSet axes = arguments.home.value_or(home::AxisSet());
+    if (axes.none()) axes = home::homable(job.printer);
+    if (arguments.home && axes.none())
+        return Diagnostic{
+            Severity::error,
+            ExitStatus::machine,
+            "printer \"" + job.printer.name + "\" has no endstops: give axis.x.endstop and others",
+            {}};
+    const Result<home::Report> report = home::home(job, axes, arguments.jog_mm);
+    if (!report) return report.error();
+    show(program, report->warnings);
+    return tell('"' + job.printer.name + '"' + (job.simulate ? ", simulated\n" : "\n") +
+                home::text_of(*report));
+}
+
+}  // namespace lyr::command_line

@@ -1,0 +1,24 @@
+// lyrrun's options that find the machine's place, move it by hand and calibrate it, in place of a print.
+
+#pragma once
+
+#include <optional>
+
+#include "apps/command_line.h"
+#include "target/home/job.h"
+
+namespace lyr::command_line {
+
+struct PlaceArguments {
+    std::optional<home::AxisSet> home;  // empty: all that can be
+    std::optional<motion::Point> jog_mm;
+
+    bool given() const { return home || jog_mm; }
+};
+
+void add_place_options(CLI::App& app, PlaceArguments& arguments);
+
+// What the options ask for; the report on standard output.
+Status work_place(const Program& program, const PlaceArguments& arguments, const home::Job& job);
+
+}  // namespace lyr::command_line

@@ -1,0 +1,106 @@
+#include "target/home/contacts.h"
+
+#include <cmath>
+
+namespace lyr::home {
+namespace {
+
+constexpr double ns_per_ms = 1e6;
+
+const std::optional<config::Pin>& pin_of(const config::Printer& printer, std::size_t contact) {
+    static const std::optional<config::Pin> none;
+    if (contact < printer.endstops.size()) return printer.endstops[contact].input;
+    return printer.probe ? printer.probe->input : none;
+}
+
+gpio::Pull pull_of(config::Pull pull) {
+    switch (pull) {
+        case config::Pull::as_is:
+            return gpio::Pull::as_is;
+        case config::Pull::up:
+            return gpio::Pull::up;
+        case config::Pull::down:
+            return gpio::Pull::down;
+        case config::Pull::none:
+            return gpio::Pull::none;
+    }
+    return gpio::Pull::as_is;
+}
+
+}  // namespace
+
+Contacts contacts_of(const config::Printer& printer) {
+    Contacts contacts;
+    for (std::size_t i = 0; i < contacts.size(); ++i) contacts[i] = pin_of(printer, i).has_value();
+    return contacts;
+}
+
+std::vector<gpio::InputRequest> contact_requests(const config::Printer& printer) {
+    std::vector<gpio::InputRequest> requests;
+    for (std::size_t i = 0; i < config::contact_count; ++i) {
+        const std::optional<config::Pin>& pin = pin_of(printer, i);
+        if (!pin) continue;
+        const std::string purpose = i == config::contact_probe
+                                        ? "probe"
+                                        : std::string(config::contact_names[i]) + ".endstop";
+        requests.push_back({{purpose, pin->chip, pin->line, pin->active_low}, pull_of(pin->pull)});
+    }
+    return requests;
+}
+
+ContactWatch::ContactWatch(gpio::InputLines& inputs, const config::Printer& printer)
+    : inputs_(inputs), settle_ns_(std::llround(printer.homing.settle_ms * ns_per_ms)) {
+    const Contacts contacts = contacts_of(printer);
+    for (std::size_t i = 0; i < contacts.size(); ++i)
+        if (contacts[i]) contact_of_.push_back(i);
+    lines_.reserve(contact_of_.size());
+}
+
+Result<Contacts> ContactWatch::touched() {
+    const Result<gpio::LineMask> levels = inputs_.read();
+    if (!levels) return levels.error();
+    Contacts touched;
+    for (std::size_t line = 0; line < contact_of_.size(); ++line)
+        touched[contact_of_[line]] = (*levels & gpio::line_bit(line)) != 0;
+    return touched;
+}
+
+Status ContactWatch::collect(bool keep) {
+    for (;;) {
+        std::array<gpio::InputEdge, 64> edges;
+        const Result<std::size_t> count = inputs_.collect(edges);
+        if (!count) return count.error();
+        for (std::size_t i = 0; keep && i < *count; ++i)
+            if (edges[i].line < lines_.size()) lines_[edges[i].line].edge(edges[i]);
+        if (*count < edges.size()) return Done{};
+    }
+}
+
+Status ContactWatch::begin(Contacts watched, run::StopRequests& stop) {
+    watched_ = watched;
+    triggers_ = {};
+    stop_ = &stop;
+    if (status_ = collect(false); !status_) return status_;
+    const Result<Contacts> now = touched();
+    if (!now) return now.error();
+    lines_.clear();
+    for (const std::size_t contact : contact_of_) lines_.emplace_back(settle_ns_, (*now)[contact]);
+    return Done{};
+}
+
+void ContactWatch::poll(std::int64_t now_ns) {
+    if (!status_) return;
+    if (status_ = collect(true); !status_) {
+        ++*stop_;
+        return;
+    }
+    for (std::size_t line = 0; line < lines_.size(); ++line) {
+        const auto edge = lines_[line].settled(now_ns);
+        const std::size_t contact = contact_of_[line];
+        if (!edge || !edge->active || !watched_[contact] || triggers_[contact]) continue;
+        triggers_[contact] = edge->time_ns;
+        if (stop_->load() == 0) ++*stop_;
+    }
+}
+
+}  // namespace lyr::home

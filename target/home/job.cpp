@@ -1,0 +1,129 @@
+#include "target/home/job.h"
+
+#include <cmath>
+
+#include "base/text.h"
+#include "target/gpio/gpiod_chip.h"
+#include "target/gpio/gpiod_inputs.h"
+#include "target/home/simulated_machine.h"
+#include "target/run/real_time.h"
+
+namespace lyr::home {
+namespace {
+
+constexpr double ns_per_s = 1e9;
+
+Diagnostic refused(std::string message) {
+    return {Severity::error, ExitStatus::machine, std::move(message), {}};
+}
+
+motion::Point start_of(const config::Printer& printer) {
+    return {printer.start_mm[0], printer.start_mm[1], printer.start_mm[2]};
+}
+
+Result<std::unique_ptr<gpio::InputLines>> open_inputs(const config::Printer& printer) {
+    const std::vector<gpio::InputRequest> requests = contact_requests(printer);
+    if (requests.empty()) return std::unique_ptr<gpio::InputLines>();
+    return gpio::open_gpiod_inputs(requests);
+}
+
+Status on_board(const config::Printer& printer, Diagnostics& warnings, const Work& work) {
+    const Result<std::vector<gpio::LineRequest>> requests = run::line_requests(printer);
+    if (!requests) return requests.error();
+    const Result<std::unique_ptr<gpio::InputLines>> inputs = open_inputs(printer);
+    if (!inputs) return inputs.error();
+    const Result<std::unique_ptr<gpio::GpioChip>> chip = gpio::open_gpiod_chip(*requests);
+    if (!chip) return chip.error();
+    const run::StopSignals signals;
+    run::lock_memory(warnings);
+    gpio::MonotonicClock clock;
+    Mover mover(printer, **chip, clock, inputs->get(), &signals);
+    Status done = work(mover);
+    Status released = (*chip)->release();
+    return done ? released : done;
+}
+
+// Within the ranges, and within a delta's reach.
+Status check_place(const config::Printer& printer, const motion::Point& to) {
+    const std::array<double, 3> at_mm{to.x, to.y, to.z};
+    for (std::size_t i = 0; i < at_mm.size(); ++i) {
+        const config::Axis& axis = printer.axes[i];
+        if (at_mm[i] >= axis.min_mm && at_mm[i] <= axis.max_mm) continue;
+        return refused(formatted("%s would go to %g mm, and its range_mm is %g to %g",
+                                 std::string(config::axis_names[i]).c_str(), at_mm[i], axis.min_mm,
+                                 axis.max_mm));
+    }
+    const double off_mm = std::hypot(to.x, to.y);
+    if (printer.kinematics == config::Kinematics::delta && off_mm > printer.delta.reach_mm)
+        return refused(
+            formatted("the head would go %g mm from the middle, and delta.reach_mm is %g", off_mm,
+                      printer.delta.reach_mm));
+    return Done{};
+}
+
+}  // namespace
+
+Status with_machine(const Job& job, Diagnostics& warnings, const Work& work) {
+    if (!job.simulate) return on_board(job.printer, warnings, work);
+    SimulatedMachine machine(job.printer, job.faults);
+    gpio::InputLines* inputs = contacts_of(job.printer).any() ? &machine.inputs() : nullptr;
+    Mover mover(job.printer, machine.chip(), machine.clock(), inputs, nullptr);
+    return work(mover);
+}
+
+Result<Report> home(const Job& job, AxisSet axes, const std::optional<motion::Point>& jog_mm) {
+    Report report;
+    const motion::Point start = start_of(job.printer);
+    report.head = start;
+    report.homed = axes;
+    if (jog_mm) {
+        report.head = {start.x + jog_mm->x, start.y + jog_mm->y, start.z + jog_mm->z};
+        if (Status possible = check_place(job.printer, report.head); !possible)
+            return possible.error();
+    }
+    const Status done = with_machine(job, report.warnings, [&](Mover& mover) -> Status {
+        const std::int64_t from_ns = mover.now_ns();
+        motion::Point at = start;
+        if (axes.any()) {
+            const Result<Homed> homed = home(mover, job.printer, axes);
+            if (!homed) return homed.error();
+            report.repeat_mm = homed->repeat_mm;
+            at = homed->head;
+        }
+        if (Status there = travel(mover, job.printer, at, start); !there) return there;
+        if (Status there = travel(mover, job.printer, start, report.head); !there) return there;
+        report.time_s = static_cast<double>(mover.now_ns() - from_ns) / ns_per_s;
+        return Done{};
+    });
+    if (!done) return done.error();
+    return report;
+}
+
+bool homes_before_print(const config::Printer& printer) {
+    return printer.homing.before_print && homable(printer).any();
+}
+
+Status home_before_print(const config::Printer& printer, gpio::GpioChip& chip, gpio::Clock& clock,
+                         const run::StopSignals& signals) {
+    const Result<std::unique_ptr<gpio::InputLines>> inputs = open_inputs(printer);
+    if (!inputs) return inputs.error();
+    Mover mover(printer, chip, clock, inputs->get(), &signals);
+    const Result<Homed> homed = home(mover, printer, homable(printer));
+    if (!homed) return homed.error();
+    return travel(mover, printer, homed->head, start_of(printer));
+}
+
+std::string text_of(const Report& report) {
+    std::string text;
+    if (report.homed.any()) {
+        text = "  homed ";
+        for (std::size_t i = 0; i < report.homed.size(); ++i)
+            if (report.homed[i]) text += config::axis_names[i];
+        text += formatted(" in %.1f s; two approaches agree within %.3f mm\n", report.time_s,
+                          report.repeat_mm);
+    }
+    return text + formatted("  the head is at x %.3f, y %.3f, z %.3f mm\n", report.head.x,
+                            report.head.y, report.head.z);
+}
+
+}  // namespace lyr::home

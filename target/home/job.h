@@ -1,0 +1,48 @@
+// Homing, and what comes after it, as a program does it: on the lines of the printer's file or on a simulated machine.
+//
+// Contract
+//  1. Nothing moves before jogs were found possible as far as that can be known.
+//  2. Afterwards all lines are inactive and released, so that the motors are off and the place is lost: a print homes
+//     again. home_before_print() leaves the motors on, for a print on the same lines.
+//  3. A jog ends within the ranges of the printer's file, or is refused (status machine) before it moves.
+
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "target/home/homing.h"
+#include "target/thermal/faults.h"
+
+namespace lyr::home {
+
+struct Job {
+    config::Printer printer;
+    bool simulate = false;
+    std::vector<thermal::Fault> faults{};  // of a simulation
+};
+
+struct Report {
+    motion::Point head;  // at the end
+    AxisSet homed;
+    double repeat_mm = 0;
+    double time_s = 0;
+    Diagnostics warnings{};
+};
+
+// What is done on a machine that is set up; `signals` as for Mover.
+using Work = std::function<Status(Mover& mover)>;
+Status with_machine(const Job& job, Diagnostics& warnings, const Work& work);
+
+// Homes, and goes to the start of a print; a jog, where given, follows. Without axes to home, a jog is one from there.
+Result<Report> home(const Job& job, AxisSet axes, const std::optional<motion::Point>& jog_mm);
+
+// Whether a print on this printer begins with homing.
+bool homes_before_print(const config::Printer& printer);
+Status home_before_print(const config::Printer& printer, gpio::GpioChip& chip, gpio::Clock& clock,
+                         const run::StopSignals& signals);
+
+std::string text_of(const Report& report);
+
+}  // namespace lyr::home

@@ -1,0 +1,184 @@
+#include "target/home/mover.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <thread>
+
+#include "target/moves/move_maker.h"
+#include "target/run/event_stream.h"
+#include "target/run/motor_steps.h"
+#include "target/run/real_time.h"
+
+namespace lyr::home {
+namespace {
+
+constexpr double ns_per_s = 1e9;
+// How long an edge of a contact may wait until it is looked at: the machine runs on meanwhile.
+constexpr std::int64_t look_ns = 1'000'000;
+
+// After every wait something is looked at.
+class PolledClock final : public gpio::Clock {
+public:
+    PolledClock(gpio::Clock& inner, ContactWatch* watch) : inner_(inner), watch_(watch) {}
+    std::int64_t now_ns() const override { return inner_.now_ns(); }
+    std::int64_t wait_until_ns(std::int64_t time_ns) override {
+        const std::int64_t now = inner_.wait_until_ns(time_ns);
+        if (watch_) watch_->poll(now);
+        return now;
+    }
+
+private:
+    gpio::Clock& inner_;
+    ContactWatch* watch_;
+};
+
+void drain(run::MotorSteps& generator, run::PulseSchedule& schedule,
+           std::vector<run::LineEvent>& events) {
+    std::array<motion::StepEvent, 1024> steps;
+    std::vector<run::Step> single;
+    for (std::size_t count = steps.size(); count == steps.size();) {
+        count = generator.next(steps);
+        single.clear();
+        for (const motion::StepEvent& step : std::span(steps).first(count))
+            for (unsigned motors = step.motors; motors; motors &= motors - 1) {
+                const int motor = std::countr_zero(motors);
+                single.push_back({step.time_ns, static_cast<std::uint8_t>(motor),
+                                  (step.positive >> motor & 1) != 0});
+            }
+        schedule.append(single, events);
+    }
+}
+
+Result<std::vector<run::LineEvent>> events_of(const config::Printer& machine,
+                                              std::span<const motion::Move> moves) {
+    Result<motion::Planner> planner = motion::Planner::create(
+        moves::motion_limits(machine), std::max<std::size_t>(moves.size() + 1, 4));
+    if (!planner) return planner.error();
+    for (const motion::Move& move : moves)
+        if (Status pushed = planner->push(move); !pushed) return pushed.error();
+    planner->flush();
+    run::MotorSteps generator(machine);
+    run::PulseSchedule schedule(machine.pulse, run::line_layout(machine).enable);
+    std::vector<run::LineEvent> events;
+    schedule.begin(run::EventStream::driver_wake_ns, events);
+    for (motion::PlannedMove planned; planner->pop(planned);) {
+        generator.start(planned);
+        drain(generator, schedule, events);
+    }
+    generator.finish();
+    drain(generator, schedule, events);
+    schedule.finish(planner->time_ns() + generator.tail_ns(), events);
+    events.pop_back();  // the motors stay on
+    return events;
+}
+
+// From the fastest of the moves to rest, twice as long as the slowest axis needs, as in a print.
+std::int64_t braking_ns(const config::Printer& machine, std::span<const motion::Move> moves) {
+    double fastest_mm_s = 0;
+    for (const motion::Move& move : moves) fastest_mm_s = std::max(fastest_mm_s, move.speed_mm_s);
+    double slowest_s = 0;
+    for (std::size_t i = 0; i < config::axis_e; ++i) {
+        const config::Axis& axis = machine.axes[i];
+        slowest_s = std::max(
+            slowest_s, std::min(fastest_mm_s, axis.max_speed_mm_s) / axis.max_acceleration_mm_s2);
+    }
+    return std::llround(2 * slowest_s * ns_per_s);
+}
+
+motion::StepCounts difference(motion::StepCounts counts, const motion::StepCounts& before) {
+    for (std::size_t i = 0; i < counts.size(); ++i) counts[i] -= before[i];
+    return counts;
+}
+
+}  // namespace
+
+Mover::Mover(const config::Printer& printer, gpio::GpioChip& chip, gpio::Clock& clock,
+             gpio::InputLines* inputs, const run::StopSignals* signals)
+    : chip_(chip), clock_(clock), tally_(chip, clock), signals_(signals) {
+    if (inputs) watch_.emplace(*inputs, printer);
+}
+
+Result<Contacts> Mover::touched() {
+    return watch_ ? watch_->touched() : Contacts();
+}
+
+Result<Moved> Mover::run(const config::Printer& machine, std::span<const motion::Move> moves,
+                         Contacts watched) {
+    const Result<std::vector<run::LineEvent>> events = events_of(machine, moves);
+    if (!events) return events.error();
+    run::StopRequests stop{0};
+    if (watch_)
+        if (Status begun = watch_->begin(watched, stop); !begun) return begun.error();
+    const motion::StepCounts before = tally_.counts();
+    // The executor takes all lines but enable for inactive.
+    const gpio::LineMask enable = run::line_layout(machine).enable;
+    if (Status set = tally_.write(gpio::all_lines(tally_.line_count()), enable); !set)
+        return set.error();
+    run::ExecutorTiming timing = run::executor_timing(machine);
+    timing.braking_ns = braking_ns(machine, moves);
+    PolledClock polled(clock_, watch_ && !signals_ ? &*watch_ : nullptr);
+    run::Executor executor(tally_, polled, timing, stop);
+    const Result<bool> executed =
+        signals_ ? execute_beside(executor, *events, stop) : execute(executor, *events, stop);
+    if (!executed) return executed.error();
+    return outcome(before);
+}
+
+Result<bool> Mover::execute(run::Executor& executor, std::span<const run::LineEvent> events,
+                            run::StopRequests&) {
+    Result<bool> executed = executor.execute(events);
+    if (executed && watch_)
+        watch_->poll(clock_.wait_until_ns(clock_.now_ns() + watch_->settle_ns()));
+    return executed;
+}
+
+// The real-time thread writes; this one watches, and is asked to stop.
+Result<bool> Mover::execute_beside(run::Executor& executor, std::span<const run::LineEvent> events,
+                                   run::StopRequests& stop) {
+    Result<bool> executed = true;
+    std::atomic<bool> finished{false};
+    std::thread edges([&] {
+        Diagnostics warnings;
+        run::take_precedence(warnings);
+        executed = executor.execute(events);
+        finished.store(true);
+    });
+    const auto look = [&] {
+        if (watch_) (void)watch_->inputs().wait_ns(look_ns);
+        if (watch_) watch_->poll(clock_.now_ns());
+        constexpr int look_ms = 1;
+        if (signals_->wait_ms(watch_ ? 0 : look_ms)) {
+            asked_to_stop_ = true;
+            ++stop;
+        }
+    };
+    while (!finished.load()) look();
+    edges.join();
+    const std::int64_t until_ns = clock_.now_ns() + (watch_ ? watch_->settle_ns() : 0);
+    do look();
+    while (clock_.now_ns() < until_ns);
+    return executed;
+}
+
+Result<Moved> Mover::outcome(const motion::StepCounts& before) const {
+    if (asked_to_stop_)
+        return Diagnostic{Severity::error, ExitStatus::stopped, "stopped on request", {}};
+    if (watch_ && !watch_->status()) return watch_->status().error();
+    Moved moved;
+    moved.counts = difference(tally_.counts(), before);
+    for (std::size_t i = 0; watch_ && i < moved.at_contact.size(); ++i) {
+        if (!watch_->triggers()[i]) continue;
+        const auto counts = tally_.counts_at(*watch_->triggers()[i]);
+        if (!counts)
+            return Diagnostic{Severity::error,
+                              ExitStatus::machine,
+                              "contact " + std::string(config::contact_names[i]) +
+                                  " closed too long before the machine came to rest",
+                              {}};
+        moved.at_contact[i] = difference(*counts, before);
+    }
+    return moved;
+}
+
+}  // namespace lyr::home

@@ -1,0 +1,61 @@
+// Moves a machine that is not printing: by the planner, the step generator and the executor of a print, and watching
+// contacts meanwhile.
+//
+// Contract
+//  1. run() makes the moves from rest to rest. A watched contact that closes brings the machine to rest on its path;
+//     the result says which closed, and where the motors were when each was first touched.
+//  2. Counts of a result are in microsteps since the begin of that run.
+//  3. SIGINT and the like bring the machine to rest and end with status stopped; all lines are as they were.
+//  4. On a board the lines are written by a thread of high priority and this one watches; with virtual time both are
+//     done by this one, step by step.
+//  5. All steps of a run are computed before it begins: 16 bytes an edge.
+
+#pragma once
+
+#include <span>
+
+#include "target/home/contacts.h"
+#include "target/home/step_tally.h"
+#include "target/motion/limits.h"
+#include "target/run/stop_signals.h"
+
+namespace lyr::home {
+
+struct Moved {
+    motion::StepCounts counts{};  // at rest
+    std::array<std::optional<motion::StepCounts>, config::contact_count> at_contact;
+    Contacts contacts() const {
+        Contacts closed;
+        for (std::size_t i = 0; i < at_contact.size(); ++i) closed[i] = at_contact[i].has_value();
+        return closed;
+    }
+};
+
+class Mover {
+public:
+    // `signals` is none with virtual time.
+    Mover(const config::Printer& printer, gpio::GpioChip& chip, gpio::Clock& clock,
+          gpio::InputLines* inputs, const run::StopSignals* signals);
+
+    // `machine` says what the moves mean for the motors, its start_mm where they begin.
+    Result<Moved> run(const config::Printer& machine, std::span<const motion::Move> moves,
+                      Contacts watched = {});
+    Result<Contacts> touched();
+    std::int64_t now_ns() const { return clock_.now_ns(); }
+
+private:
+    Result<bool> execute(run::Executor& executor, std::span<const run::LineEvent> events,
+                         run::StopRequests& stop);
+    Result<bool> execute_beside(run::Executor& executor, std::span<const run::LineEvent> events,
+                                run::StopRequests& stop);
+    Result<Moved> outcome(const motion::StepCounts& before) const;
+
+    gpio::GpioChip& chip_;
+    gpio::Clock& clock_;
+    StepTally tally_;
+    std::optional<ContactWatch> watch_;
+    const run::StopSignals* signals_;
+    bool asked_to_stop_ = false;
+};
+
+}  // namespace lyr::home

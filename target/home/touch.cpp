@@ -1,0 +1,155 @@
+#include "target/home/touch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/text.h"
+#include "target/motion/kinematics.h"
+#include "target/moves/machine.h"
+
+namespace lyr::home {
+namespace {
+
+std::string name_of(const Target& target) {
+    if (target.contact == config::contact_probe) return "the probe";
+    return "endstop " + std::string(config::contact_names[target.contact]);
+}
+
+Diagnostic failed(const Target& target, const std::string& what) {
+    return {Severity::error,
+            ExitStatus::machine,
+            name_of(target) + what + "; the printer is not homed",
+            {}};
+}
+
+Diagnostic never(const Target& target, double reach_mm) {
+    return failed(target, formatted(" has not triggered within %.1f mm: is it connected, and does "
+                                    "the axis move towards it?",
+                                    reach_mm));
+}
+
+Diagnostic stuck(const Target& target) {
+    return failed(target, formatted(" is still triggered after backing off by %g mm: it is stuck, "
+                                    "not connected, or active_low is the wrong way round",
+                                    target.back_off_mm));
+}
+
+Diagnostic differ(const Target& target, double off_mm) {
+    return failed(target, formatted(": two approaches differ by %.3f mm, and the tolerance is %g: "
+                                    "the contact is loose, or the motor loses steps",
+                                    off_mm, target.tolerance_mm));
+}
+
+}  // namespace
+
+ByAxes::Positions ByAxes::way_mm(const motion::StepCounts& counts) const {
+    std::array<double, 3> motors_mm{};
+    for (std::size_t i = 0; i < motors_mm.size(); ++i)
+        motors_mm[i] = static_cast<double>(counts[i]) / machine_.axes[i].steps_per_mm;
+    const motion::Point way = motion::head_at(moves::kinematics_of(machine_), motors_mm);
+    return {way.x, way.y, way.z};
+}
+
+Result<Moved> ByAxes::move(const Positions& way_mm, double speed_mm_s, Contacts watched) {
+    const auto& [x, y, z] = at_mm_;
+    machine_.start_mm = at_mm_;
+    const motion::Line line{{x, y, z}, {x + way_mm[0], y + way_mm[1], z + way_mm[2]}};
+    if (motion::length_of(line) <= motion::Planner::shortest_mm) return Moved();
+    Result<Moved> moved = mover_.run(machine_, std::array{motion::Move{line, speed_mm_s}}, watched);
+    if (!moved) return moved;
+    const Positions moved_mm = this->way_mm(moved->counts);
+    for (std::size_t i = 0; i < at_mm_.size(); ++i) at_mm_[i] += moved_mm[i];
+    return moved;
+}
+
+Result<ByAxes::Positions> ByAxes::touch(std::span<const Target> targets, double speed_mm_s,
+                                        double reach_mm) {
+    Positions touched_mm{}, left_mm{};
+    std::vector<Target> left(targets.begin(), targets.end());
+    for (const Target& target : left) left_mm[target.axis] = reach_mm;
+    while (!left.empty()) {
+        Positions way_mm{};
+        Contacts watched;
+        for (const Target& target : left) {
+            way_mm[target.axis] = target.direction * left_mm[target.axis];
+            watched[target.contact] = true;
+        }
+        const Positions from_mm = at_mm_;
+        const double together = std::sqrt(static_cast<double>(left.size()));
+        const Result<Moved> moved = move(way_mm, speed_mm_s * together, watched);
+        if (!moved) return moved.error();
+        if (moved->contacts().none()) return never(left.front(), reach_mm);
+        for (const Target& target : left) {
+            left_mm[target.axis] -= std::abs(at_mm_[target.axis] - from_mm[target.axis]);
+            if (const auto& counts = moved->at_contact[target.contact])
+                touched_mm[target.axis] = from_mm[target.axis] + this->way_mm(*counts)[target.axis];
+        }
+        std::erase_if(left, [&](const Target& target) {
+            return moved->at_contact[target.contact].has_value();
+        });
+    }
+    return touched_mm;
+}
+
+Status ByAxes::check_open(std::span<const Target> targets) {
+    const Result<Contacts> touched = mover_.touched();
+    if (!touched) return touched.error();
+    for (const Target& target : targets)
+        if ((*touched)[target.contact]) return stuck(target);
+    return Done{};
+}
+
+// Leaves the contacts, to back_off_mm from the places given, and comes again.
+Result<ByAxes::Positions> ByAxes::touch_slowly(std::span<const Target> targets,
+                                               const Positions& leave_mm) {
+    Positions way_mm{};
+    double speed_mm_s = targets.front().fast_mm_s, reach_mm = 0;
+    for (const Target& target : targets) {
+        way_mm[target.axis] =
+            leave_mm[target.axis] - target.direction * target.back_off_mm - at_mm_[target.axis];
+        reach_mm = std::max(reach_mm, 2 * target.back_off_mm);
+        speed_mm_s = std::min(speed_mm_s, target.fast_mm_s);
+    }
+    const Result<Moved> moved = move(way_mm, speed_mm_s);
+    if (!moved) return moved.error();
+    if (Status open = check_open(targets); !open) return open.error();
+    return touch(targets, targets.front().slow_mm_s, reach_mm);
+}
+
+Result<double> ByAxes::home(std::span<const Target> targets) {
+    const Result<Contacts> touched = mover_.touched();
+    if (!touched) return touched.error();
+    std::vector<Target> open;
+    for (const Target& target : targets)
+        if (!(*touched)[target.contact]) open.push_back(target);
+    Positions first_mm = at_mm_;
+    if (!open.empty()) {
+        double reach_mm = 0;
+        for (const Target& target : open) reach_mm = std::max(reach_mm, target.reach_mm);
+        const Result<Positions> fast = touch(open, open.front().fast_mm_s, reach_mm);
+        if (!fast) return fast.error();
+        for (const Target& target : open) first_mm[target.axis] = (*fast)[target.axis];
+    }
+    Result<Positions> found_mm = touch_slowly(targets, first_mm);
+    if (found_mm && open.size() < targets.size()) {
+        first_mm = *found_mm;
+        found_mm = touch_slowly(targets, first_mm);
+    }
+    if (!found_mm) return found_mm.error();
+    double repeat_mm = 0;
+    Positions away_mm{};
+    for (const Target& target : targets) {
+        const std::size_t axis = target.axis;
+        const double off_mm = std::abs((*found_mm)[axis] - first_mm[axis]);
+        if (off_mm > target.tolerance_mm) return differ(target, off_mm);
+        repeat_mm = std::max(repeat_mm, off_mm);
+        at_mm_[axis] += target.at_mm - (*found_mm)[axis];
+        away_mm[axis] = target.at_mm - target.direction * target.back_off_mm - at_mm_[axis];
+    }
+    const Result<Moved> moved = move(away_mm, targets.front().fast_mm_s);
+    if (!moved) return moved.error();
+    return repeat_mm;
+}
+
+}  // namespace lyr::home

@@ -1,0 +1,90 @@
+// Homing and jogging from the outside.
+
+#include "apps/program.h"
+#include "target/run/print_files.h"
+
+using namespace lyr;
+using namespace lyr::tests;
+
+namespace {
+
+const std::string axes =
+    "[axis.x]\nsteps_per_mm = 80\nmax_speed_mm_s = 200\nmax_acceleration_mm_s2 = 3000\n"
+    "range_mm = [0, 120]\nendstop = { line = 5, pull = \"up\", active_low = true }\n"
+    "[axis.y]\nsteps_per_mm = 80\nmax_speed_mm_s = 150\nmax_acceleration_mm_s2 = 3000\n"
+    "range_mm = [0, 120]\nendstop = 6\nendstop_end = \"high\"\n"
+    "[axis.z]\nsteps_per_mm = 400\nmax_speed_mm_s = 10\nmax_acceleration_mm_s2 = 300\n"
+    "range_mm = [0, 80]\nendstop = 7\n"
+    "[axis.e]\nsteps_per_mm = 415\nmax_speed_mm_s = 40\nmax_acceleration_mm_s2 = 5000\n";
+
+Folder with_printer(const std::string& more = "") {
+    Folder folder("home");
+    folder.write("p.toml", "name = \"tiny\"\n" + more + axes);
+    return folder;
+}
+
+}  // namespace
+
+TEST_CASE("lyrrun --home: says what was homed and where the head is") {
+    const Folder folder = with_printer("start_mm = [10, 20, 5]\n");
+    const Ended all = folder.run("lyrrun --home --simulate --printer p.toml");
+    CHECK(all.status == 0);
+    CHECK(all.err.empty());
+    CHECK(all.out.find("homed xyz in ") != std::string::npos);
+    CHECK(all.out.find("the head is at x 10.000, y 20.000, z 5.000 mm") != std::string::npos);
+    const Ended one = folder.run("lyrrun --home x --simulate --printer p.toml");
+    CHECK(one.status == 0);
+    CHECK(one.out.find("homed x in ") != std::string::npos);
+}
+
+TEST_CASE("lyrrun --jog: from the start of a print, within the ranges") {
+    const Folder folder = with_printer("start_mm = [10, 20, 5]\n");
+    const Ended good = folder.run("lyrrun --jog x=10,z=-1.5 --simulate --printer p.toml");
+    CHECK(good.status == 0);
+    CHECK(good.out.find("x 20.000, y 20.000, z 3.500") != std::string::npos);
+    check_failure(folder.run("lyrrun --jog x=-11 --simulate --printer p.toml"), "lyrrun", 7,
+                  "x would go to -1 mm, and its range_mm is 0 to 120");
+    check_failure(folder.run("lyrrun --jog x=1,x=2 --simulate --printer p.toml"), "lyrrun", 2,
+                  "x=10,z=-1");
+    const Ended free = Folder("jog").run("lyrrun --jog y=-3 --simulate");
+    CHECK(free.status == 0);
+    CHECK(free.out.find("y -3.000") != std::string::npos);
+}
+
+TEST_CASE("lyrrun --home: faults come with their message and status 7") {
+    const Folder folder = with_printer();
+    const auto broken = [&](const char* faults) {
+        folder.write("f.txt", faults);
+        return folder.run("lyrrun --home --simulate --printer p.toml --faults f.txt");
+    };
+    check_failure(broken("0 dead y\n"), "lyrrun", 7, "endstop y has not triggered within 130.0 mm");
+    check_failure(broken("0 stuck z\n"), "lyrrun", 7, "endstop z is still triggered");
+    CHECK(broken("0 bounce x 1.5\n").status == 0);
+    check_failure(broken("1 dead q\n"), "lyrrun", 3, "no endstop or probe \"q\"");
+    check_failure(broken("1 dead probe\n"), "lyrrun", 3, "no endstop or probe \"probe\"");
+    check_failure(broken("1 ded x\n"), "lyrrun", 3, "did you mean `dead`?");
+    check_failure(broken("1 bounce x\n"), "lyrrun", 3, "takes an endstop's axis and a value");
+}
+
+TEST_CASE("lyrrun: a print is homed first, unless the printer says not to") {
+    const std::string print = write_print("homed", {draw_square}, {0, false, 60, 60});
+    const auto simulated = [&](const std::string& more, const char* faults) {
+        const Folder folder = with_printer(more);
+        folder.write("f.txt", faults);
+        return folder.run("lyrrun " + print + " --simulate --printer p.toml --faults f.txt");
+    };
+    CHECK(simulated("", "").status == 0);
+    check_failure(simulated("", "0 dead x\n"), "lyrrun", 7, "endstop x has not triggered");
+    CHECK(simulated("homing.before_print = false\n", "0 dead x\n").status == 0);
+}
+
+TEST_CASE("lyrrun --home: options that make no sense together, and printers that cannot") {
+    const Folder folder = with_printer();
+    check_failure(folder.run("lyrrun --home --tune bed=60 --simulate --printer p.toml"), "lyrrun",
+                  2, "--tune goes without");
+    check_failure(folder.run("lyrrun --home --json --simulate --printer p.toml"), "lyrrun", 2,
+                  "--json");
+    check_failure(folder.run("lyrrun --home"), "lyrrun", 2, "--printer");
+    check_failure(folder.run("lyrrun --home --simulate"), "lyrrun", 7, "axis.x.endstop");
+    check_failure(folder.run("lyrrun --home --printer p.toml"), "lyrrun", 7, "axis.x.step");
+}
