@@ -6,6 +6,7 @@
 
 #include "apps/command_line.h"
 #include "apps/files.h"
+#include "apps/lyrrun_board.h"
 #include "apps/lyrrun_place.h"
 #include "apps/printer_file.h"
 #include "apps/progress_line.h"
@@ -29,6 +30,7 @@ struct Arguments {
     };
     std::optional<Tune> tune;
     PlaceArguments place;
+    BoardArguments board;
     bool simulate = false, json = false, no_heat = false;
 };
 
@@ -44,6 +46,8 @@ constexpr Program program{
     "  lyrrun part.lyr --printer printer.toml --no-heat   move the machine, heaters off\n"
     "  lyrrun --printer printer.toml --tune tool=210      find a heater's kp, ki and kd\n"
     "  lyrrun part.lyr --simulate --faults faults.txt     see what the guards do about faults\n"
+    "  lyrrun --printer printer.toml --check              what this board lacks for it\n"
+    "  lyrrun --printer printer.toml --measure-latency    how fast it may step\n"
     "  lyrrun --printer printer.toml --home               find where the head is\n"
     "  lyrrun --printer printer.toml --jog x=10,z=5       and move it by so much\n"
     "\n"
@@ -78,7 +82,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
              "Run without a machine and without waiting; check every pulse against the file");
     add_file(app, "--trace", arguments.trace_path,
              "Write the simulated lines of the motors as a wave file (VCD); -: standard output");
-    add_flag(app, "--json", arguments.json, "Report the simulation as one JSON object");
+    add_flag(app, "--json", arguments.json, "Report the simulation or --check as one JSON object");
     add_flag(app, "--no-heat", arguments.no_heat,
              "Pass over the temperatures and fans that the file sets");
     add_file(app, "--faults", arguments.faults_path,
@@ -93,6 +97,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
         },
         "Find kp, ki and kd of a heater at a temperature, in place of a print");
     add_place_options(app, arguments.place);
+    add_board_options(app, arguments.board);
 }
 
 // "1:02:03"
@@ -197,8 +202,24 @@ Status print(const Arguments& arguments, const config::Printer& printer) {
                 run::text_of(*report));
 }
 
+Status check_board_together(const Arguments& arguments) {
+    const BoardArguments& board = arguments.board;
+    if (board.check == board.measure)
+        return usage(board.check ? "--check goes without --measure-latency"
+                                 : "--lines goes with --measure-latency");
+    if (board.lines && board.check) return usage("--lines goes with --measure-latency");
+    if (!arguments.lyr_path.empty() || arguments.tune || arguments.place.given() ||
+        arguments.simulate || arguments.no_heat || !arguments.trace_path.empty() ||
+        !arguments.faults_path.empty() || (arguments.json && !board.check))
+        return usage(board.check ? "--check goes with --printer and --json alone"
+                                 : "--measure-latency goes with --printer, --seconds and --lines "
+                                   "alone");
+    return Done{};
+}
+
 // What makes no sense together.
 Status check_together(const Arguments& arguments) {
+    if (arguments.board.given()) return check_board_together(arguments);
     if (arguments.tune && arguments.place.given())
         return usage("--tune goes without --home and --jog");
     if (arguments.place.given()) {
@@ -229,7 +250,8 @@ Status work(const Arguments& arguments) {
         return usage("a print is read more than once: give a file, not standard input");
     if (!arguments.simulate && arguments.printer_path.empty())
         return usage("without --simulate, --printer FILE must say what the machine is");
-    if (!arguments.simulate && (!arguments.trace_path.empty() || arguments.json))
+    if (!arguments.simulate &&
+        (!arguments.trace_path.empty() || (arguments.json && !arguments.board.check)))
         return usage("--trace and --json need --simulate");
     if (const Status apart = check_apart({{"the print", arguments.lyr_path},
                                           {"the printer's file", arguments.printer_path},
@@ -239,6 +261,8 @@ Status work(const Arguments& arguments) {
         return apart;
     const Result<config::Printer> printer = read_printer(arguments.printer_path);
     if (!printer) return printer.error();
+    if (arguments.board.given())
+        return work_board(program, arguments.board, *printer, arguments.json);
     if (arguments.tune) return tune(arguments, *printer);
     if (arguments.place.given()) return place(arguments, *printer);
     return arguments.simulate ? simulate(arguments, *printer) : print(arguments, *printer);
