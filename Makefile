@@ -3,9 +3,12 @@
 # make test       builds and runs every test
 # make test-bits  a million random bits of a large print flipped, one at a time: both readers find each
 # make sanitize   the same tests under the address and undefined-behaviour sanitizers, into build-sanitize/
+# make tsan       what runs on a board under the thread sanitizer, into build-tsan/
 # make test-klipper KLIPPER=checkout   both show pieces as G-code through Klipper's own batch mode (needs: tools/setup
 #                 --klipper); docs/exports.md
 # make board      only what a printer's board needs (lyrrun, lyrctl, lyrview), into build-board/
+# make cross      the same for 64-bit and 32-bit ARM boards with Debian 12 or later, into build-arm64/ and build-armhf/
+# make test-cross the tests of what runs on a board, built for both and run by qemu-user
 # make bench      speed beside OpenCASCADE's and PrusaSlicer's, into build-bench/ (needs: tools/setup --bench);
 #                 LYR_BENCH_FILES=folder of STEP files to read
 # make install    into PREFIX (default /usr/local)
@@ -18,7 +21,7 @@ LYR_BENCH_FILES ?= fixtures/parts
 LYR_BENCH_SET   = --set perimeters.count=3 --set infill.density=15% --set infill.pattern=grid
 CTEST   = ctest --output-on-failure -j $(JOBS)
 
-.PHONY: all setup test-setup demo test test-bits test-klipper sanitize board bench install clean
+.PHONY: all setup test-setup demo test test-bits test-klipper sanitize tsan board cross test-cross bench install clean
 
 all: setup
 	cmake -S . -B $(BUILD) -DCMAKE_BUILD_TYPE=Release
@@ -29,6 +32,7 @@ setup:
 
 test-setup:
 	@tools/setup --test
+	@tools/setup --gpiod2 $(BUILD)/gpiod2 || echo "setup: without libgpiod 2.x its tests are left out" >&2
 
 demo: all
 	@mkdir -p demo
@@ -61,10 +65,33 @@ sanitize: test-setup
 	cmake --build build-sanitize -j $(JOBS)
 	cd build-sanitize && $(CTEST)
 
+tsan: test-setup
+	cmake -S . -B build-tsan -DCMAKE_BUILD_TYPE=RelWithDebInfo -DLYR_KERNEL=OFF -DLYR_SANITIZE=thread
+	cmake --build build-tsan -j $(JOBS) --target board_tests
+	cd build-tsan && $(CTEST) -L board
+
 board: setup
 	cmake -S . -B build-board -DCMAKE_BUILD_TYPE=Release -DLYR_KERNEL=OFF -DLYR_TESTS=OFF \
 	  -DCMAKE_DISABLE_FIND_PACKAGE_Eigen3=ON
 	cmake --build build-board -j $(JOBS)
+
+# The pattern's stem is Debian's name of the processor.
+CROSS = arm64 armhf
+
+cross: $(CROSS:%=cross-%)
+
+cross-%:
+	@tools/setup --cross $* build-$*/sysroot
+	cmake -S . -B build-$* -DCMAKE_BUILD_TYPE=Release -DLYR_KERNEL=OFF -DLYR_PRECOMPILE=OFF -DLYR_ARCH=$* \
+	  -DLYR_SYSROOT=$(CURDIR)/build-$*/sysroot -DCMAKE_TOOLCHAIN_FILE=$(CURDIR)/cmake/cross.cmake
+	cmake --build build-$* -j $(JOBS) --target lyrrun lyrview
+
+test-cross: $(CROSS:%=test-cross-%)
+
+# Programs that start others need an emulator that the kernel knows of; test_apps is left to "make test".
+test-cross-%: cross-%
+	cmake --build build-$* -j $(JOBS) --target board_tests
+	cd build-$* && $(CTEST) -L board
 
 bench: setup
 	cmake -S . -B build-bench -DCMAKE_BUILD_TYPE=Release -DLYR_BENCH=ON -DLYR_TESTS=OFF
@@ -79,4 +106,4 @@ install: all
 	cmake --install $(BUILD) --prefix $(PREFIX)
 
 clean:
-	rm -rf build build-sanitize build-board build-bench build-klipper demo
+	rm -rf build build-sanitize build-tsan build-board build-arm64 build-armhf build-bench build-klipper demo

@@ -6,6 +6,7 @@
 
 #include "apps/command_line.h"
 #include "apps/files.h"
+#include "apps/lyrrun_board.h"
 #include "apps/lyrrun_place.h"
 #include "apps/print_server.h"
 #include "apps/printer_file.h"
@@ -32,6 +33,7 @@ struct Arguments {
     };
     std::optional<Tune> tune;
     PlaceArguments place;
+    BoardArguments board;
     bool simulate = false, json = false, no_heat = false, resume = false, resumable = false;
     bool dry_run = false;
     std::string socket;
@@ -50,6 +52,8 @@ constexpr Program program{
     "  lyrrun part.lyr --dry-run                          try that without a board, in real time\n"
     "  lyrrun --printer printer.toml --tune tool=210      find a heater's kp, ki and kd\n"
     "  lyrrun part.lyr --simulate --faults faults.txt     see what the guards do about faults\n"
+    "  lyrrun --printer printer.toml --check              what this board lacks for it\n"
+    "  lyrrun --printer printer.toml --measure-latency    how fast it may step\n"
     "  lyrrun --printer printer.toml --home               find where the head is\n"
     "  lyrrun --printer printer.toml --jog x=10,z=5       and move it by so much\n"
     "  lyrrun --printer printer.toml --calibrate mesh     measure how high the bed is where\n"
@@ -90,7 +94,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
              "Run without a machine and without waiting; check every pulse against the file");
     add_file(app, "--trace", arguments.trace_path,
              "Write the simulated lines of the motors as a wave file (VCD); -: standard output");
-    add_flag(app, "--json", arguments.json, "Report the simulation as one JSON object");
+    add_flag(app, "--json", arguments.json, "Report the simulation or --check as one JSON object");
     add_flag(app, "--no-heat", arguments.no_heat,
              "Pass over the temperatures and fans that the file sets");
     add_flag(app, "--dry-run", arguments.dry_run,
@@ -116,6 +120,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
         },
         "Find kp, ki and kd of a heater at a temperature, in place of a print");
     add_place_options(app, arguments.place);
+    add_board_options(app, arguments.board);
 }
 
 // "1:02:03"
@@ -267,8 +272,24 @@ Status print(const Arguments& arguments, const config::Printer& printer) {
                 printer.name + "\"\n" + run::text_of(*report));
 }
 
+Status check_board_together(const Arguments& arguments) {
+    const BoardArguments& board = arguments.board;
+    if (board.check == board.measure)
+        return usage(board.check ? "--check goes without --measure-latency"
+                                 : "--lines goes with --measure-latency");
+    if (board.lines && board.check) return usage("--lines goes with --measure-latency");
+    if (!arguments.lyr_path.empty() || arguments.tune || arguments.place.given() ||
+        arguments.simulate || arguments.no_heat || !arguments.trace_path.empty() ||
+        !arguments.faults_path.empty() || (arguments.json && !board.check))
+        return usage(board.check ? "--check goes with --printer and --json alone"
+                                 : "--measure-latency goes with --printer, --seconds and --lines "
+                                   "alone");
+    return Done{};
+}
+
 // What makes no sense together.
 Status check_together(const Arguments& arguments) {
+    if (arguments.board.given()) return check_board_together(arguments);
     if (arguments.tune && arguments.place.given())
         return usage("--tune goes without --home, --jog and --calibrate");
     if (arguments.place.calibrate && (arguments.place.home || arguments.place.jog_mm))
@@ -312,8 +333,10 @@ Status work(const Arguments& arguments) {
     if (arguments.lyr_path == "-")
         return usage("a print is read more than once: give a file, not standard input");
     if (!arguments.simulate && !arguments.dry_run && arguments.printer_path.empty())
-        return usage("without --simulate and --dry-run, --printer FILE must say what the machine is");
-    if (!arguments.simulate && (!arguments.trace_path.empty() || arguments.json))
+        return usage(
+            "without --simulate and --dry-run, --printer FILE must say what the machine is");
+    if (!arguments.simulate &&
+        (!arguments.trace_path.empty() || (arguments.json && !arguments.board.check)))
         return usage("--trace and --json need --simulate");
     if (const Status apart = check_apart({{"the print", arguments.lyr_path},
                                           {"the printer's file", arguments.printer_path},
@@ -324,6 +347,8 @@ Status work(const Arguments& arguments) {
         return apart;
     const Result<config::Printer> printer = read_printer(arguments.printer_path);
     if (!printer) return printer.error();
+    if (arguments.board.given())
+        return work_board(program, arguments.board, *printer, arguments.json);
     if (arguments.tune) return tune(arguments, *printer);
     if (arguments.place.given()) return place(arguments, *printer);
     if (arguments.resumable) return tell_resumable(arguments, *printer);

@@ -93,6 +93,19 @@ std::string in_quotes(std::string_view text) {
     return '"' + escaped(text.substr(0, kept)) + (kept < text.size() ? "...\"" : "\"");
 }
 
+std::string in_json(std::string_view text) {
+    constexpr unsigned char first_printable = 0x20;
+    std::string json = "\"";
+    for (const char c : text) {
+        if (c == '"' || c == '\\') json += '\\';
+        if (static_cast<unsigned char>(c) < first_printable)
+            json += formatted("\\u%04x", static_cast<unsigned>(c));
+        else
+            json += c;
+    }
+    return json + '"';
+}
+
 std::string counted(std::uint64_t count, std::string_view noun) {
     return std::to_string(count) + ' ' + std::string(noun) + (count == 1 ? "" : "s");
 }

@@ -16,6 +16,9 @@ std::string escaped(std::string_view text);
 // Escaped, in double quotes, and cut to a length that fits a message.
 std::string in_quotes(std::string_view text);
 
+// A JSON string, quotes and all.
+std::string in_json(std::string_view text);
+
 // "1 layer", "2 layers", "0 layers": for nouns whose plural takes an s.
 std::string counted(std::uint64_t count, std::string_view noun);
 

@@ -4,9 +4,14 @@
 add_library(lyr_flags INTERFACE)
 # Contraction is off so that results do not depend on the processor's fused multiply-add. Nobody asks errno about roots,
 # nor the processor's flags about traps: the compiler need not keep them, and results are the same.
+# What no program calls is left out of it, function by function.
 target_compile_options(lyr_flags INTERFACE -Wall -Wextra -Wconversion -Wshadow -ffp-contract=off -fno-math-errno
-                       -fno-trapping-math)
-if(LYR_SANITIZE)
+                       -fno-trapping-math -ffunction-sections -fdata-sections)
+target_link_options(lyr_flags INTERFACE -Wl,--gc-sections)
+if(LYR_SANITIZE STREQUAL thread)
+  target_compile_options(lyr_flags INTERFACE -fsanitize=thread)
+  target_link_options(lyr_flags INTERFACE -fsanitize=thread)
+elseif(LYR_SANITIZE)
   target_compile_options(lyr_flags INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all)
   target_link_options(lyr_flags INTERFACE -fsanitize=address,undefined)
 endif()
@@ -34,11 +39,12 @@ function(lyr_use_headers target)
   endif()
 endfunction()
 
-# lyr_room(<library> SOURCES <file>... [LINK <library>...] [PRIVATE <library>...])
+# lyr_room(<library> [SMALL] SOURCES <file>... [FAST <file>...] [LINK <library>...] [PRIVATE <library>...])
 # Headers are included by their path from the root ("kernel/brep/model.h"); each room publishes only
-# its own folder, through a link in the build tree.
+# its own folder, through a link in the build tree. SMALL rooms are what a board's program does now and then (options,
+# settings, reports): they are built for size, but for those of their sources that are FAST.
 function(lyr_room name)
-  cmake_parse_arguments(ROOM "" "" "SOURCES;LINK;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ROOM "SMALL" "" "SOURCES;FAST;LINK;PRIVATE" ${ARGN})
   file(RELATIVE_PATH path ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
   set(published ${PROJECT_BINARY_DIR}/rooms/${name})
   get_filename_component(parent ${published}/${path} DIRECTORY)
@@ -48,6 +54,10 @@ function(lyr_room name)
     add_library(${name} STATIC ${ROOM_SOURCES})
     target_link_libraries(${name} PUBLIC ${ROOM_LINK} PRIVATE lyr_flags ${ROOM_PRIVATE})
     target_include_directories(${name} PUBLIC ${published})
+    if(ROOM_SMALL)
+      target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-Os>)
+      set_property(SOURCE ${ROOM_FAST} APPEND PROPERTY COMPILE_OPTIONS $<$<CONFIG:Release>:-O2>)
+    endif()
     lyr_use_headers(${name})
   else()
     add_library(${name} INTERFACE)
@@ -66,6 +76,10 @@ function(lyr_test name)
     LYR_FIXTURES="${PROJECT_SOURCE_DIR}/fixtures" LYR_BUILD="${PROJECT_BINARY_DIR}")
   lyr_use_headers(${name})
   add_test(NAME ${name} COMMAND ${name})
+  if(CMAKE_CURRENT_SOURCE_DIR MATCHES "^${PROJECT_SOURCE_DIR}/tests/(base|format|target)(/|$)")
+    set_property(TEST ${name} PROPERTY LABELS board)
+    add_dependencies(board_tests ${name})
+  endif()
 endfunction()
 
 # lyr_stands_alone(<target>...): what a printer's board runs has neither Eigen nor a model, whatever is built beside it.

@@ -24,6 +24,7 @@ struct Pin {
     std::string chip;
     std::variant<std::uint32_t, std::string> line;
     bool active_low = false;
+    bool open_drain = false;  // of an output
     Pull pull = Pull::as_is;  // of an input
 };
 

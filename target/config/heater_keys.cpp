@@ -138,8 +138,8 @@ void append_heater(std::vector<Key>& keys, std::size_t n) {
     const HeaterKeys heater{keys, n, "heater." + std::string(heater_names[n]) + '.'};
     const auto self = [](Heater& h) -> Heater& { return h; };
     const auto pid = [](Heater& h) -> Pid& { return h.pid; };
-    append_pin(keys, heater.path + "output",
-               [n](Draft& draft) -> std::optional<Pin>& { return heater_of(draft, n).output; });
+    append_output(keys, heater.path + "output",
+                  [n](Draft& draft) -> std::optional<Pin>& { return heater_of(draft, n).output; });
     keys.push_back(text(heater.path + "pwm", [n](Draft& draft, const std::string& value) {
         heater_of(draft, n).pwm = value;
     }));
@@ -158,8 +158,8 @@ void append_heater(std::vector<Key>& keys, std::size_t n) {
 
 void append_heat_keys(std::vector<Key>& keys) {
     for (std::size_t n = 0; n < heater_count; ++n) append_heater(keys, n);
-    append_pin(keys, "fan.part.output",
-               [](Draft& draft) -> std::optional<Pin>& { return fan_of(draft).output; });
+    append_output(keys, "fan.part.output",
+                  [](Draft& draft) -> std::optional<Pin>& { return fan_of(draft).output; });
     keys.push_back(text("fan.part.pwm",
                         [](Draft& draft, const std::string& value) { fan_of(draft).pwm = value; }));
     keys.push_back(number("fan.part.cycle_s", cycles_s,

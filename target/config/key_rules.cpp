@@ -105,14 +105,14 @@ Complaint apply_line(const toml::node& node, Pin& pin) {
     return std::nullopt;
 }
 
-}  // namespace
+Pin& pin_in(Draft& draft, const PinPlace& place) {
+    std::optional<Pin>& pin = place(draft);
+    if (!pin) pin.emplace();
+    return *pin;
+}
 
 void append_pin(std::vector<Key>& keys, const std::string& path, const PinPlace& place) {
-    const auto pin_of = [place](Draft& draft) -> Pin& {
-        std::optional<Pin>& pin = place(draft);
-        if (!pin) pin.emplace();
-        return *pin;
-    };
+    const auto pin_of = [place](Draft& draft) -> Pin& { return pin_in(draft, place); };
     const auto line = [pin_of](const toml::node& node, Draft& draft) {
         return apply_line(node, pin_of(draft));
     };
@@ -125,13 +125,20 @@ void append_pin(std::vector<Key>& keys, const std::string& path, const PinPlace&
                         [pin_of](Draft& draft, bool value) { pin_of(draft).active_low = value; }));
 }
 
+}  // namespace
+
+void append_output(std::vector<Key>& keys, const std::string& path, const PinPlace& place) {
+    append_pin(keys, path, place);
+    keys.push_back(flag(path + ".open_drain", [place](Draft& draft, bool value) {
+        pin_in(draft, place).open_drain = value;
+    }));
+}
+
 void append_input(std::vector<Key>& keys, const std::string& path, const PinPlace& place) {
     static constexpr std::array<std::string_view, 4> pulls{"as_is", "up", "down", "none"};
     append_pin(keys, path, place);
     keys.push_back(choice(path + ".pull", pulls, [place](Draft& draft, std::size_t pull) {
-        std::optional<Pin>& pin = place(draft);
-        if (!pin) pin.emplace();
-        pin->pull = static_cast<Pull>(pull);
+        pin_in(draft, place).pull = static_cast<Pull>(pull);
     }));
 }
 

@@ -26,8 +26,8 @@ Key required(Key key);
 
 // A line as number, name or table.
 using PinPlace = std::function<std::optional<Pin>&(Draft&)>;
-void append_pin(std::vector<Key>& keys, const std::string& path, const PinPlace& place);
-// The same of an input, with its pull.
+void append_output(std::vector<Key>& keys, const std::string& path, const PinPlace& place);
+// With its pull.
 void append_input(std::vector<Key>& keys, const std::string& path, const PinPlace& place);
 
 // A list of as many numbers as `values` has places; none if the node is anything else.

@@ -66,9 +66,9 @@ void append_axis(std::vector<Key>& keys, std::size_t i) {
             return draft.printer.axes[i].*field;
         };
     };
-    append_pin(keys, axis + "step", line(&Axis::step));
-    append_pin(keys, axis + "direction", line(&Axis::direction));
-    append_pin(keys, axis + "enable", line(&Axis::enable));
+    append_output(keys, axis + "step", line(&Axis::step));
+    append_output(keys, axis + "direction", line(&Axis::direction));
+    append_output(keys, axis + "enable", line(&Axis::enable));
 }
 
 }  // namespace
@@ -96,6 +96,12 @@ std::vector<Key> printer_keys() {
                                &PulseTiming::direction_hold_ns));
     keys.push_back(
         nanoseconds("pulse.late_limit_ms", {0.01, 10'000}, ns_per_ms, &PulseTiming::late_limit_ns));
+    keys.push_back(number("timing.late_us", {0, 1e6}, [](Draft& draft, double value) {
+        draft.printer.timing.late_ns = std::llround(value * ns_per_us);
+    }));
+    keys.push_back(number("timing.write_us", {0, 1e4}, [](Draft& draft, double value) {
+        draft.printer.timing.write_ns = std::llround(value * ns_per_us);
+    }));
     for (std::size_t i = 0; i < axis_count; ++i) append_axis(keys, i);
     append_heat_keys(keys);
     append_homing_keys(keys);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string_view>
 
 #include "base/text.h"
@@ -124,6 +125,35 @@ double fastest_motor_mm_s(const Printer& printer, std::size_t motor) {
     // Without a frame there is nothing to say yet; that is another error.
     const double steepest = height_mm > 0 ? off_mm / height_mm : 0;
     return printer.axes[axis_z].max_speed_mm_s + std::hypot(x, y) * steepest;
+}
+
+double held_steps_per_s(const Printer& printer) {
+    constexpr double ns_per_s = 1e9;
+    if (!printer.timing.late_ns) return std::numeric_limits<double>::infinity();
+    const PulseTiming& pulse = printer.pulse;
+    const std::int64_t edge_gap_ns =
+        std::max({pulse.high_ns, pulse.low_ns, pulse.direction_setup_ns, pulse.direction_hold_ns});
+    // Up and down for each motor, one after the other.
+    constexpr std::int64_t edges = 2 * axis_count;
+    return ns_per_s / static_cast<double>(*printer.timing.late_ns +
+                                          edges * (printer.timing.write_ns + edge_gap_ns));
+}
+
+double held_speed_mm_s(const Printer& printer, std::size_t axis) {
+    const double held_hz = held_steps_per_s(printer);
+    double share = 1;
+    for (std::size_t motor = 0; motor < axis_count; ++motor) {
+        const bool moves_axis =
+            motor == axis ||
+            (motor != axis_e && axis != axis_e &&
+             (printer.kinematics == Kinematics::delta ||
+              (printer.kinematics == Kinematics::corexy && motor != axis_z && axis != axis_z)));
+        if (!moves_axis) continue;
+        const double asked_hz =
+            fastest_motor_mm_s(printer, motor) * printer.axes[motor].steps_per_mm;
+        share = std::min(share, held_hz / asked_hz);
+    }
+    return share * printer.axes[axis].max_speed_mm_s;
 }
 
 }  // namespace lyr::config

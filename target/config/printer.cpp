@@ -141,9 +141,10 @@ void Walk::check_missing() {
             problem(place(key.path), key.path + " is missing");
 }
 
-// Every line of a printer with the key that names it, in order.
-std::vector<std::pair<std::string, std::optional<Pin>*>> lines_of(Printer& printer) {
-    std::vector<std::pair<std::string, std::optional<Pin>*>> lines;
+// Every line that a printer may have with the key that names it, in order.
+template <class AnyPrinter>
+auto lines_of(AnyPrinter& printer) {
+    std::vector<std::pair<std::string, decltype(&printer.axes[0].step)>> lines;
     for (std::size_t i = 0; i < axis_count; ++i) {
         const std::string axis = "axis." + std::string(axis_names[i]) + '.';
         lines.emplace_back(axis + "step", &printer.axes[i].step);
@@ -320,6 +321,13 @@ Result<Printer> read_printer(const std::string& path) {
     const Result<std::string> text = read_text(path);
     if (!text) return text.error();
     return parse_printer(*text, path);
+}
+
+std::vector<std::pair<std::string, Pin>> used_lines(const Printer& printer) {
+    std::vector<std::pair<std::string, Pin>> used;
+    for (const auto& [path, pin] : lines_of(printer))
+        if (*pin) used.emplace_back(path, **pin);
+    return used;
 }
 
 Printer generic_printer() {

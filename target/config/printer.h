@@ -16,6 +16,7 @@
 //     printer's file; it need not be there yet. A name without a slash is one beside the printer's file.
 //  8. A delta's arms reach the whole of its reach_mm, at flattest_arm_share of their length at the most, and
 //     its start lies within.
+//  9. held_speed_mm_s() of all axes together asks no motor for more than held_steps_per_s().
 
 #pragma once
 
@@ -60,6 +61,12 @@ struct PulseTiming {
     std::int64_t late_limit_ns = 5'000'000;   // an edge later than this ends the print
 };
 
+// How well this board keeps time, as `lyrrun --measure-latency` finds.
+struct BoardTiming {
+    std::optional<std::int64_t> late_ns;  // of one edge in 10,000; none: not measured
+    std::int64_t write_ns = 2'000;        // what one write of lines takes
+};
+
 // An arm this much of whose length lies level is 10 degrees from flat; beyond, it pulls rather than lifts.
 inline constexpr double flattest_arm_share = 0.985;
 
@@ -90,6 +97,7 @@ struct Printer {
     std::array<double, 3> start_mm{};            // where the head stands when a print begins
     std::optional<double> filament_diameter_mm;  // none: as the file says
     PulseTiming pulse;
+    BoardTiming timing;
     std::array<Axis, axis_count> axes;
     std::array<std::optional<Heater>, heater_count> heaters;
     std::optional<Fan> part_fan;
@@ -121,8 +129,17 @@ std::vector<std::string> known_keys();
 // What may be in a calibration file.
 bool is_calibration_key(std::string_view path);
 
+// Every line of the printer, with the key that names it.
+std::vector<std::pair<std::string, Pin>> used_lines(const Printer& printer);
+
 // The fastest that the motor of an axis ever moves, in mm of its steps_per_mm: a belt of a CoreXY follows
 // two axes, a carriage of a delta is fastest where its arm is flattest.
 double fastest_motor_mm_s(const Printer& printer, std::size_t motor);
+
+// How often every motor can step, all at the same time, if a step that is as late as the board is now and then shall
+// not delay the next one. Infinite where nothing was measured.
+double held_steps_per_s(const Printer& printer);
+// The axis's max_speed_mm_s, or less if its motors, with all axes at full speed, would step more often than that.
+double held_speed_mm_s(const Printer& printer, std::size_t axis);
 
 }  // namespace lyr::config

@@ -12,7 +12,8 @@
 //     until the first write every line is inactive.
 //  2. write(changed, levels) gives the lines in `changed` the state of their bit in `levels` (1 is
 //     active); all other lines keep theirs. Bits beyond the lines requested are ignored.
-//  3. Lines of one kernel chip that change in one write change in one system call.
+//  3. Lines of one kernel chip that change in one write change in one system call; with libgpiod 1.6 those of
+//     one drive do.
 //  4. An active-low line is active at the low level. Only the implementation knows.
 //  5. A failed write returns the diagnostic; the state of the lines is then what the kernel made of
 //  it,
@@ -44,12 +45,16 @@ constexpr LineMask all_lines(std::size_t count) {
     return count >= max_lines ? ~LineMask{0} : line_bit(count) - 1;
 }
 
+// How a line goes to its high level: driven there, or let go, so that a resistor may pull it up.
+enum class Drive : std::uint8_t { push_pull, open_drain };
+
 // What to request: a line of a kernel chip, by its number there or by its name.
 struct LineRequest {
     std::string purpose;  // "x.step": in messages and traces
     std::string chip;     // "gpiochip0", "/dev/gpiochip0" or a label such as "pinctrl-bcm2835"
     std::variant<std::uint32_t, std::string> line;
     bool active_low = false;
+    Drive drive = Drive::push_pull;  // of outputs
 };
 
 class GpioChip {

@@ -1,10 +1,8 @@
-// One bulk request a kernel chip. The request's lines are all set by every ioctl on it, so that the
-// levels of lines that do not change are repeated from memory.
+// One request a kernel chip. What is held is set from the levels in memory, so that a request whose lines are
+// all set by every ioctl on it (libgpiod 1.6) and one where only some are (2.x) are the same here.
 
 #include "target/gpio/gpiod_chip.h"
 
-#include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <utility>
@@ -15,24 +13,20 @@
 namespace lyr::gpio {
 namespace {
 
-// The lines held on one kernel chip.
+// The lines held by one request.
 struct Bank {
-    ChipHandle chip;
-    std::string name;
-    gpiod_line_bulk bulk{};
-    std::vector<std::size_t> lines;  // of the GpioChip, in the order of the bulk
+    OpenChip chip;
+    std::vector<calls::OutputLine> lines;
+    calls::HeldHandle held;  // goes before the lines and the chip
     LineMask mask = 0;
     LineMask levels = 0;  // physical, as last set
     bool stale = false;   // the last write failed: the kernel's levels are not known
 };
 
-Status set_levels(Bank& bank, LineMask levels) {
-    std::array<int, GPIOD_LINE_BULK_MAX_LINES> values{};
-    for (std::size_t i = 0; i < bank.lines.size(); ++i)
-        values[i] = (levels & line_bit(bank.lines[i])) != 0;
-    bank.stale = ::gpiod_line_set_value_bulk(&bank.bulk, values.data()) != 0;
+Status set_levels(Bank& bank, LineMask changed, LineMask levels) {
+    bank.stale = !calls::set(*bank.held, bank.stale ? bank.mask : changed, levels);
     if (bank.stale)
-        return machine_error("writing the lines of " + bank.name + " failed: " +
+        return machine_error("writing the lines of " + bank.chip.facts.name + " failed: " +
                              std::strerror(errno) + "; the printer must be homed again");
     bank.levels = levels;
     return Done{};
@@ -54,7 +48,7 @@ public:
         for (Bank& bank : banks_) {
             const LineMask ours = changed & bank.mask;
             if (!ours && !(bank.stale && changed)) continue;
-            Status set = set_levels(bank, (bank.levels & ~ours) | (physical & ours));
+            Status set = set_levels(bank, ours, (bank.levels & ~ours) | (physical & ours));
             if (!set && result) result = std::move(set);
         }
         return result;
@@ -73,49 +67,43 @@ private:
     LineMask inverted_;
 };
 
-// The bank of the request's kernel chip, opened if it is the first line there. Two ways to write
-// the same chip ("0", "gpiochip0") are the same bank.
-Result<std::size_t> bank_for(std::vector<Bank>& banks, const LineRequest& request) {
-    Result<ChipHandle> chip = open_chip(request);
-    if (!chip) return chip.error();
-    const std::string name = ::gpiod_chip_name(chip->get());
-    const auto known = std::find_if(banks.begin(), banks.end(),
-                                    [&](const Bank& bank) { return bank.name == name; });
-    if (known != banks.end()) return static_cast<std::size_t>(known - banks.begin());
-    banks.emplace_back();
-    banks.back().chip = std::move(*chip);
-    banks.back().name = name;
-    return banks.size() - 1;
+bool fit_one_request(const LineRequest& a, const LineRequest& b) {
+    return calls::holds_unlike_lines() || a.drive == b.drive;
 }
 
+// All lines are found before any is held, so that nothing is if one cannot be.
 Status add_line(std::vector<Bank>& banks, std::span<const LineRequest> requests,
                 std::size_t index) {
     const LineRequest& request = requests[index];
-    const Result<std::size_t> found = bank_for(banks, request);
-    if (!found) return found.error();
-    Bank& bank = banks[*found];
-    const Result<gpiod_line*> line = find_line(bank.chip.get(), request);
-    if (!line) return line.error();
-    for (std::size_t i = 0; i < bank.lines.size(); ++i)
-        if (bank.bulk.lines[i] == *line)
-            return machine_error(line_text(request) + " is already used for " +
-                                 requests[bank.lines[i]].purpose);
-    ::gpiod_line_bulk_add(&bank.bulk, *line);
-    bank.lines.push_back(index);
-    bank.mask |= line_bit(index);
-    if (request.active_low) bank.levels |= line_bit(index);
+    Result<OpenChip> chip = open_chip(request);
+    if (!chip) return chip.error();
+    const Result<std::uint32_t> number = free_line(*chip, request);
+    if (!number) return number.error();
+    Bank* bank = nullptr;
+    for (Bank& known : banks) {
+        // Two ways to write the same chip ("0", "gpiochip0") have the same name.
+        if (known.chip.facts.name != chip->facts.name) continue;
+        for (const calls::OutputLine& line : known.lines)
+            if (line.number == *number)
+                return machine_error(line_text(request) + " is already used for " +
+                                     requests[line.bit].purpose);
+        if (fit_one_request(requests[known.lines.front().bit], request)) bank = &known;
+    }
+    if (!bank) {
+        bank = &banks.emplace_back();
+        bank->chip = std::move(*chip);
+    }
+    bank->lines.push_back({index, *number, request.active_low, request.drive});
+    bank->mask |= line_bit(index);
+    if (request.active_low) bank->levels |= line_bit(index);
     return Done{};
 }
 
-// Requests the bank's lines as outputs, inactive from the first moment.
 Status hold(Bank& bank, std::span<const LineRequest> requests) {
-    std::array<int, GPIOD_LINE_BULK_MAX_LINES> values{};
-    for (std::size_t i = 0; i < bank.lines.size(); ++i)
-        values[i] = requests[bank.lines[i]].active_low;
-    if (::gpiod_line_request_bulk_output(&bank.bulk, line_consumer, values.data()) == 0)
-        return Done{};
-    return machine_error("cannot request the lines of " + bank.name + " as outputs (" +
-                         requests[bank.lines.front()].purpose +
+    bank.held = calls::hold(*bank.chip.handle, bank.lines, line_consumer);
+    if (bank.held) return Done{};
+    return machine_error("cannot request the lines of " + bank.chip.facts.name + " as outputs (" +
+                         requests[bank.lines.front().bit].purpose +
                          " and others): " + std::strerror(errno));
 }
 

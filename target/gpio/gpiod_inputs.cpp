@@ -20,8 +20,8 @@ namespace {
 constexpr std::int64_t ns_per_s = 1'000'000'000;
 
 struct Input {
-    ChipHandle chip;
-    gpiod_line* line = nullptr;
+    OpenChip chip;
+    calls::WatchedHandle line;
     std::string text;  // for messages
     bool active_low = false;
 };
@@ -34,7 +34,7 @@ class GpiodInputs final : public InputLines {
 public:
     explicit GpiodInputs(std::vector<Input> inputs) : inputs_(std::move(inputs)) {
         for (std::size_t i = 0; i < inputs_.size(); ++i)
-            polled_[i] = {::gpiod_line_event_get_fd(inputs_[i].line), POLLIN | POLLPRI, 0};
+            polled_[i] = {calls::descriptor(*inputs_[i].line), POLLIN | POLLPRI, 0};
     }
 
     std::size_t line_count() const override { return inputs_.size(); }
@@ -42,9 +42,9 @@ public:
     Result<LineMask> read() override {
         LineMask levels = 0;
         for (std::size_t i = 0; i < inputs_.size(); ++i) {
-            const int value = ::gpiod_line_get_value(inputs_[i].line);
-            if (value < 0) return lost(inputs_[i]);
-            if ((value != 0) != inputs_[i].active_low) levels |= line_bit(i);
+            const std::optional<bool> level = calls::level(*inputs_[i].line);
+            if (!level) return lost(inputs_[i]);
+            if (*level != inputs_[i].active_low) levels |= line_bit(i);
         }
         return levels;
     }
@@ -74,24 +74,20 @@ public:
     }
 
 private:
-    // The kernel keeps 16 edges a line, and drops what comes then.
-    static constexpr std::size_t kernel_edges = 16;
-
     Result<std::size_t> take(std::size_t index, std::span<InputEdge> edges) {
         const Input& input = inputs_[index];
-        std::array<gpiod_line_event, kernel_edges> events{};
-        const auto room = static_cast<unsigned>(std::min(edges.size(), events.size()));
+        std::array<calls::KernelEdge, calls::kept_edges> kept;
         const int count =
-            ::gpiod_line_event_read_fd_multiple(polled_[index].fd, events.data(), room);
+            calls::take(*input.line, std::span(kept).first(std::min(edges.size(), kept.size())));
         if (count < 0) return lost(input);
-        if (count == static_cast<int>(kernel_edges))
+        // The kernel drops what comes after these.
+        if (count == static_cast<int>(kept.size()))
             return machine_error(input.text +
                                  ": edges come faster than they can be taken; is the "
                                  "line connected, and has it a pull resistor?");
         for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
-            edges[i] = {std::int64_t{events[i].ts.tv_sec} * ns_per_s + events[i].ts.tv_nsec,
-                        static_cast<std::uint8_t>(index),
-                        (events[i].event_type == GPIOD_LINE_EVENT_RISING_EDGE) != input.active_low};
+            edges[i] = {kept[i].time_ns, static_cast<std::uint8_t>(index),
+                        kept[i].level != input.active_low};
         return static_cast<std::size_t>(count);
     }
 
@@ -99,31 +95,17 @@ private:
     std::array<pollfd, max_lines> polled_{};
 };
 
-int flags_of(Pull pull) {
-    switch (pull) {
-        case Pull::as_is:
-            return 0;
-        case Pull::up:
-            return GPIOD_LINE_REQUEST_FLAG_BIAS_PULL_UP;
-        case Pull::down:
-            return GPIOD_LINE_REQUEST_FLAG_BIAS_PULL_DOWN;
-        case Pull::none:
-            return GPIOD_LINE_REQUEST_FLAG_BIAS_DISABLE;
-    }
-    return 0;
-}
-
 Result<Input> open_input(const InputRequest& request) {
-    Result<ChipHandle> chip = open_chip(request.line);
-    if (!chip) return std::move(chip).error();
-    Result<gpiod_line*> line = find_line(chip->get(), request.line);
-    if (!line) return std::move(line).error();
+    Result<OpenChip> chip = open_chip(request.line);
+    if (!chip) return chip.error();
+    const Result<std::uint32_t> number = free_line(*chip, request.line);
+    if (!number) return number.error();
     const std::string text = line_text(request.line);
-    if (::gpiod_line_request_both_edges_events_flags(*line, line_consumer,
-                                                     flags_of(request.pull)) != 0)
+    calls::WatchedHandle line = calls::watch(*chip->handle, *number, request.pull, line_consumer);
+    if (!line)
         return machine_error("cannot watch " + text + ": " + std::strerror(errno) +
                              (request.pull == Pull::as_is ? "" : "; can the chip set its pull?"));
-    return Input{std::move(*chip), *line, text, request.line.active_low};
+    return Input{std::move(*chip), std::move(line), text, request.line.active_low};
 }
 
 }  // namespace

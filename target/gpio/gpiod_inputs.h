@@ -1,4 +1,4 @@
-// Real input lines, through libgpiod 1.6.
+// Real input lines, through libgpiod.
 //
 // Contract (beside that of InputLines)
 //  1. Refusals are as those of open_gpiod_chip(): purpose, chip, line and what to do. Nothing is held then.

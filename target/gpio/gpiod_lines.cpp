@@ -1,11 +1,18 @@
+// libgpiod 2.x opens chips by path only, so that names are looked up here for both versions.
+
 #include "target/gpio/gpiod_lines.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <utility>
+#include <vector>
 
 namespace lyr::gpio {
 namespace {
+
+constexpr const char* device_prefix = "gpiochip";
 
 Diagnostic cannot_open(const LineRequest& request, int error) {
     std::string message =
@@ -15,6 +22,43 @@ Diagnostic cannot_open(const LineRequest& request, int error) {
     else
         message += "; `gpiodetect` lists the chips of this machine";
     return machine_error(std::move(message));
+}
+
+// Without handle: errno says why.
+OpenChip open_path(const std::string& path) {
+    OpenChip chip{calls::open(path), {}};
+    if (!chip.handle) return chip;
+    if (auto facts = calls::facts(*chip.handle))
+        chip.facts = std::move(*facts);
+    else
+        chip.handle.reset();
+    return chip;
+}
+
+OpenChip open_label(const std::string& label, const std::string& devices) {
+    std::vector<std::string> paths;
+    std::error_code none;
+    for (const auto& entry : std::filesystem::directory_iterator(devices, none))
+        if (entry.path().filename().string().starts_with(device_prefix))
+            paths.push_back(entry.path().string());
+    std::sort(paths.begin(), paths.end());
+    int error = ENODEV;
+    for (const std::string& path : paths) {
+        OpenChip chip = open_path(path);
+        if (chip.handle && chip.facts.label == label) return chip;
+        // It may be the one.
+        if (!chip.handle && errno == EACCES) error = EACCES;
+    }
+    errno = error;
+    return {};
+}
+
+OpenChip open_named(const std::string& name, const std::string& devices) {
+    if (name.front() == '/') return open_path(name);
+    const bool is_number = name.find_first_not_of("0123456789") == std::string::npos;
+    const std::string device = is_number ? device_prefix + name : name;
+    if (device.starts_with(device_prefix)) return open_path(devices + '/' + device);
+    return open_label(name, devices);
 }
 
 }  // namespace
@@ -30,36 +74,43 @@ std::string line_text(const LineRequest& request) {
     return request.purpose + ": line " + line + " of " + request.chip;
 }
 
-Result<ChipHandle> open_chip(const LineRequest& request) {
-    // The library would take an empty name for chip number 0.
+Result<OpenChip> open_chip(const LineRequest& request, const std::string& devices) {
     if (request.chip.empty()) return cannot_open(request, ENODEV);
-    errno = 0;
-    ChipHandle chip(::gpiod_chip_open_lookup(request.chip.c_str()));
-    if (!chip) return cannot_open(request, errno ? errno : ENODEV);
+    OpenChip chip = open_named(request.chip, devices);
+    if (!chip.handle) return cannot_open(request, errno);
     return chip;
 }
 
-Result<gpiod_line*> find_line(gpiod_chip* chip, const LineRequest& request) {
-    gpiod_line* line = nullptr;
-    if (const auto* number = std::get_if<std::uint32_t>(&request.line)) {
-        const unsigned int count = ::gpiod_chip_num_lines(chip);
-        if (*number >= count)
+Result<FoundLine> find_line(const OpenChip& chip, const LineRequest& request) {
+    std::optional<std::uint32_t> number;
+    if (const auto* stated = std::get_if<std::uint32_t>(&request.line)) {
+        if (*stated >= chip.facts.line_count)
             return machine_error(line_text(request) + " does not exist: the chip has lines 0 to " +
-                                 std::to_string(count - 1));
-        line = ::gpiod_chip_get_line(chip, *number);
+                                 std::to_string(chip.facts.line_count - 1));
+        number = *stated;
     } else {
-        line = ::gpiod_chip_find_line(chip, std::get<std::string>(request.line).c_str());
+        number = calls::find(*chip.handle, std::get<std::string>(request.line));
     }
-    if (!line)
+    auto facts = number ? calls::facts(*chip.handle, *number) : std::nullopt;
+    if (!facts)
         return machine_error(line_text(request) + " was not found; `gpioinfo " + request.chip +
                              "` lists the lines");
-    if (::gpiod_line_is_used(line)) {
-        const char* user = ::gpiod_line_consumer(line);
-        return machine_error(line_text(request) + " is already held by " +
-                             (user ? user : "the kernel") +
+    return FoundLine{chip.facts.name, *number, std::move(facts->name), std::move(facts->user)};
+}
+
+Result<std::uint32_t> free_line(const OpenChip& chip, const LineRequest& request) {
+    const Result<FoundLine> found = find_line(chip, request);
+    if (!found) return found.error();
+    if (found->user)
+        return machine_error(line_text(request) + " is already held by " + *found->user +
                              "; choose another line or end its user");
-    }
-    return line;
+    return found->number;
+}
+
+Result<FoundLine> look_up_line(const LineRequest& request) {
+    const Result<OpenChip> chip = open_chip(request);
+    if (!chip) return chip.error();
+    return find_line(*chip, request);
 }
 
 }  // namespace lyr::gpio

@@ -31,7 +31,8 @@ struct Overloaded : Calls... {
 motion::Limits motion_limits(const config::Printer& printer) {
     motion::Limits limits;
     for (std::size_t i = 0; i < limits.axes.size(); ++i)
-        limits.axes[i] = {printer.axes[i].max_speed_mm_s, printer.axes[i].max_acceleration_mm_s2};
+        limits.axes[i] = {config::held_speed_mm_s(printer, i),
+                          printer.axes[i].max_acceleration_mm_s2};
     limits.junction_deviation_mm = printer.junction_deviation_mm;
     limits.jerk_mm_s3 = printer.max_jerk_mm_s3;
     if (const auto bed = bed_of(printer)) limits.bed = bed->shape();

@@ -8,6 +8,7 @@
 
 #include "target/gpio/gpiod_chip.h"
 #include "target/run/line_keeper.h"
+#include "target/run/line_layout.h"
 
 namespace lyr::run {
 namespace {
@@ -35,7 +36,7 @@ Status append(Outputs& all, const std::string& section, const std::optional<conf
     if (line) {
         all.outputs.push_back(
             {thermal::LineOutput{all.requests.size(), thermal::SlowPwm(cycle_s)}, heats});
-        all.requests.push_back({section + ".output", line->chip, line->line, line->active_low});
+        all.requests.push_back(line_request(section + ".output", *line));
         return Done{};
     }
     Result<thermal::KernelPwm> channel = thermal::KernelPwm::open(pwm);

@@ -12,11 +12,12 @@ std::string name_of(std::size_t axis, const char* line) {
     return std::string(axis_names[axis]) + '.' + line;
 }
 
-gpio::LineRequest request(std::string purpose, const config::Pin& pin, bool inverted) {
-    return {std::move(purpose), pin.chip, pin.line, pin.active_low != inverted};
-}
-
 }  // namespace
+
+gpio::LineRequest line_request(std::string purpose, const config::Pin& pin, bool inverted) {
+    return {std::move(purpose), pin.chip, pin.line, pin.active_low != inverted,
+            pin.open_drain ? gpio::Drive::open_drain : gpio::Drive::push_pull};
+}
 
 LineLayout line_layout(const config::Printer& printer) {
     LineLayout layout;
@@ -43,12 +44,12 @@ Result<std::vector<gpio::LineRequest>> line_requests(const config::Printer& prin
                                   name_of(i, axis.step ? "direction" : "step") +
                                   ": a line is needed to print (not to --simulate)",
                               {}};
-        requests.push_back(request(name_of(i, "step"), *axis.step, false));
-        requests.push_back(request(name_of(i, "direction"), *axis.direction, axis.invert));
+        requests.push_back(line_request(name_of(i, "step"), *axis.step));
+        requests.push_back(line_request(name_of(i, "direction"), *axis.direction, axis.invert));
     }
     for (std::size_t i = 0; i < axis_count; ++i)
         if (const auto& enable = printer.axes[i].enable)
-            requests.push_back(request(name_of(i, "enable"), *enable, false));
+            requests.push_back(line_request(name_of(i, "enable"), *enable));
     return requests;
 }
 

@@ -44,6 +44,9 @@ struct LineLayout {
 
 LineLayout line_layout(const config::Printer& printer);
 
+// A line of printer.toml as target/gpio asks for it.
+gpio::LineRequest line_request(std::string purpose, const config::Pin& pin, bool inverted = false);
+
 Result<std::vector<gpio::LineRequest>> line_requests(const config::Printer& printer);
 
 }  // namespace lyr::run

@@ -99,16 +99,7 @@ constexpr std::array<Spacing, 4> spacings{{
 
 // What comes before, then the value in quotes.
 void append_json(std::string& text, const char* before, const std::string& value) {
-    text += before;
-    text += '"';
-    for (const char c : value) {
-        if (c == '"' || c == '\\') text += '\\';
-        if (static_cast<unsigned char>(c) < 0x20)
-            text += formatted("\\u%04x", static_cast<unsigned>(c));
-        else
-            text += c;
-    }
-    text += '"';
+    text += before + in_json(value);
 }
 
 void append_json(std::string& text, const char* key, const std::optional<std::int64_t>& value) {

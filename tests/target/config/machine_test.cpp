@@ -1,4 +1,4 @@
-// Keys of kinematics, shapers and pressure advance; contract 7 of target/config/printer.h.
+// Keys of kinematics, shapers and pressure advance; contracts 8 and 9 of target/config/printer.h.
 
 #include <doctest/doctest.h>
 
@@ -122,4 +122,34 @@ TEST_CASE("machine: backlash is a length of x, y and z") {
         parse_printer(changed(axes, "[axis.y]\n", "[axis.y]\nbacklash_mm = 3\n"), "p").ok());
     CHECK_FALSE(
         parse_printer(changed(axes, "[axis.e]\n", "[axis.e]\nbacklash_mm = 0.1\n"), "p").ok());
+}
+
+TEST_CASE("printer 9: measured lateness limits what every motor is asked for, on all kinematics") {
+    Printer printer = generic_printer();
+    CHECK(std::isinf(held_steps_per_s(printer)));
+    for (std::size_t axis = 0; axis < axis_count; ++axis)
+        CHECK(held_speed_mm_s(printer, axis) == printer.axes[axis].max_speed_mm_s);
+    printer.timing.late_ns = 160'000;
+    printer.timing.write_ns = 3'000;
+    // 160 us, and eight edges of 3 us that are 2 us apart.
+    CHECK(held_steps_per_s(printer) == doctest::Approx(1e9 / 200'000));
+    CHECK(held_speed_mm_s(printer, axis_x) == doctest::Approx(5'000 / 80.0));
+    CHECK(held_speed_mm_s(printer, axis_z) == printer.axes[axis_z].max_speed_mm_s);
+    for (const Kinematics kinematics :
+         {Kinematics::cartesian, Kinematics::corexy, Kinematics::delta}) {
+        printer.kinematics = kinematics;
+        printer.delta.arm_mm = {290, 300, 310};
+        printer.delta.radius_mm = {130, 125, 120};
+        printer.delta.reach_mm = 110;
+        Printer held = printer;
+        for (std::size_t axis = 0; axis < axis_count; ++axis)
+            held.axes[axis].max_speed_mm_s = held_speed_mm_s(printer, axis);
+        double busiest_hz = 0;
+        for (std::size_t motor = 0; motor < axis_count; ++motor) {
+            const double hz = fastest_motor_mm_s(held, motor) * held.axes[motor].steps_per_mm;
+            CHECK(hz < held_steps_per_s(printer) * (1 + 1e-12));
+            busiest_hz = std::max(busiest_hz, hz);
+        }
+        CHECK(busiest_hz == doctest::Approx(held_steps_per_s(printer)));
+    }
 }

@@ -97,6 +97,10 @@ TEST_CASE("printer: a whole file arrives as it is written") {
     CHECK(std::get<std::string>(x.direction->line) == "X_DIR");
     CHECK(x.enable->chip == "gpiochip1");
     CHECK(x.enable->active_low);
+    CHECK_FALSE(x.enable->open_drain);
+    const auto open = parse_printer(with("active_low = true }", "open_drain = true }"), "p");
+    REQUIRE(open.ok());
+    CHECK(open->axes[axis_x].enable->open_drain);
     CHECK(printer.axes[axis_y].steps_per_mm == 80.5);
     CHECK(printer.axes[axis_y].min_mm == -10.5);
     CHECK(printer.axes[axis_y].invert);

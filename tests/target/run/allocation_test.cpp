@@ -1,4 +1,4 @@
-// What the real-time thread runs must not allocate: executor.h's contract 7 and event_ring.h's 2. Allocations
+// What the real-time thread runs must not allocate: executor.h's contract 8 and event_ring.h's 2. Allocations
 // are counted in the thread that asks for it only.
 
 #include <doctest/doctest.h>
@@ -10,6 +10,8 @@
 #include "target/gpio/mock_chip.h"
 #include "target/run/event_ring.h"
 #include "target/run/executor.h"
+#include "target/run/print.h"
+#include "target/run/print_files.h"
 
 namespace {
 
@@ -47,7 +49,7 @@ std::vector<LineEvent> pulses(std::size_t steps) {
 
 }  // namespace
 
-TEST_CASE("executor 7, ring 2: taking events from the ring and writing them allocates nothing") {
+TEST_CASE("executor 8, ring 2: taking events from the ring and writing them allocates nothing") {
     const std::vector<LineEvent> events = pulses(20'000);
     counts = true;
     const std::vector<LineEvent> copy(events);
@@ -89,6 +91,49 @@ TEST_CASE("executor 7, ring 2: taking events from the ring and writing them allo
     CHECK(executor.writes() > events.size() / 2);
     CHECK(executor.stretched_ns() > 0);
     CHECK(chip.release().ok());
+}
+
+namespace {
+
+// Whatever thread writes is the real-time one; it is watched from its first write on.
+class TrappedChip final : public gpio::GpioChip {
+public:
+    std::size_t line_count() const override { return 8; }
+    Status write(gpio::LineMask, gpio::LineMask) override {
+        if (!counts) before_ = allocations;
+        counts = true;
+        ++writes;
+        return Done{};
+    }
+    Status release() override {
+        counts = false;
+        allocated = allocations - before_;
+        return Done{};
+    }
+
+    std::uint64_t writes = 0;
+    std::size_t allocated = 0;
+
+private:
+    std::size_t before_ = 0;
+};
+
+}  // namespace
+
+TEST_CASE(
+    "executor 8: from its first write on, the real-time thread of a print allocates nothing") {
+    config::Printer printer = config::generic_printer();
+    // Machines that run tests are late now and then.
+    printer.pulse.late_limit_ns = 10'000'000'000;
+    const std::string file =
+        tests::write_print("no_allocation", std::vector<tests::Drawing>(3, tests::draw_square));
+    gpio::MonotonicClock clock;
+    TrappedChip chip;
+    const auto report = print({file, printer, true, {}}, chip, clock);
+    REQUIRE_MESSAGE(report.ok(), report.error().message);
+    CHECK(chip.writes == report->writes);
+    CHECK(chip.writes > 1'000);
+    CHECK(chip.allocated == 0);
 }
 
 }  // namespace lyr::run

@@ -28,6 +28,10 @@ TEST_CASE("layout 1, 2: steps and directions by axis, then the enable lines that
     CHECK((*requests)[3].active_low);
     CHECK_FALSE((*requests)[1].active_low);
     CHECK((*requests)[8].active_low);
+    CHECK((*requests)[0].drive == gpio::Drive::push_pull);
+    const config::Pin open{"gpiochip1", 3u, true, true};
+    CHECK(line_request("e.step", open).drive == gpio::Drive::open_drain);
+    CHECK_FALSE(line_request("e.step", open, true).active_low);
 }
 
 TEST_CASE("layout 3: a line that is missing is named by its key") {

@@ -1,0 +1,24 @@
+// lyrrun's options that look at the board in place of a print: whether it has what the printer's file names, and how
+// well it keeps time.
+
+#pragma once
+
+#include "apps/command_line.h"
+#include "target/config/printer.h"
+
+namespace lyr::command_line {
+
+struct BoardArguments {
+    bool check = false, measure = false, lines = false;
+    double seconds = 10;
+
+    bool given() const { return check || measure || lines; }
+};
+
+void add_board_options(CLI::App& app, BoardArguments& arguments);
+
+// What the options ask for; the report on standard output.
+Status work_board(const Program& program, const BoardArguments& arguments,
+                  const config::Printer& printer, bool json);
+
+}  // namespace lyr::command_line

@@ -1,0 +1,203 @@
+// Times are kept and sorted: a hundred thousand of them are a second's worth of memory, and exact.
+
+#include "target/board/latency.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <cstdio>
+#include <thread>
+
+#include "base/text.h"
+#include "target/gpio/gpiod_chip.h"
+#include "target/run/line_layout.h"
+#include "target/run/real_time.h"
+
+namespace lyr::board {
+namespace {
+
+constexpr double ns_per_s = 1e9;
+constexpr double ns_per_us = 1e3;
+
+// Longer than MonotonicClock stays awake for: the thread sleeps.
+constexpr std::int64_t sparse_ns = 1'000'000;
+static_assert(sparse_ns > gpio::MonotonicClock::awake_ns);
+// 20,000 edges a second.
+constexpr std::int64_t dense_ns = 50'000;
+static_assert(dense_ns < gpio::MonotonicClock::awake_ns);
+// Dense waits come in runs of this length, longer than the second in which Linux counts how long
+// a real-time thread has run.
+constexpr std::int64_t run_ns = 2'000'000'000;
+
+// What a print's other threads and a board's other programs do: more than the caches hold.
+void work(const std::atomic<bool>& finished) {
+    std::vector<std::uint64_t> memory(std::size_t{1} << 18);
+    for (std::uint64_t i = 0; !finished.load(std::memory_order_relaxed); ++i)
+        memory[(i * 7919) % memory.size()] += i;
+}
+
+// The ordinary work, from construction to destruction.
+class Load {
+public:
+    Load() {
+        for (unsigned i = 0; i < std::max(1U, std::thread::hardware_concurrency()); ++i)
+            threads_.emplace_back([this] { work(finished_); });
+    }
+    ~Load() {
+        finished_.store(true);
+        for (std::thread& thread : threads_) thread.join();
+    }
+
+private:
+    std::atomic<bool> finished_{false};
+    std::vector<std::thread> threads_;
+};
+
+struct Samples {
+    std::vector<std::int64_t> asleep_ns, awake_ns, write_ns;
+};
+
+class Measurement {
+public:
+    Measurement(gpio::Clock& clock, gpio::GpioChip* chip) : clock_(clock), chip_(chip) {}
+
+    Result<Samples> run(double seconds) {
+        const std::int64_t half_ns = std::llround(seconds * ns_per_s / 2);
+        const std::int64_t end_ns = clock_.now_ns() + 2 * half_ns;
+        const auto room = [half_ns](std::int64_t gap_ns) {
+            return static_cast<std::size_t>(half_ns / gap_ns + 1);
+        };
+        samples_.asleep_ns.reserve(room(sparse_ns));
+        samples_.awake_ns.reserve(room(dense_ns));
+        samples_.write_ns.reserve(room(sparse_ns) + room(dense_ns));
+        // Each kind has its half, however short the whole is.
+        const std::int64_t turn_ns = std::min(run_ns, half_ns);
+        // There is time for one more wait of either kind.
+        const auto time_left = [&] { return clock_.now_ns() + sparse_ns < end_ns; };
+        for (bool dense = false; time_left(); dense = !dense) {
+            const std::int64_t until_ns = std::min(end_ns, clock_.now_ns() + turn_ns);
+            if (Status done = dense ? wait(dense_ns, until_ns, samples_.awake_ns)
+                                    : wait(sparse_ns, until_ns, samples_.asleep_ns);
+                !done)
+                return done.error();
+        }
+        return std::move(samples_);
+    }
+
+private:
+    Status wait(std::int64_t gap_ns, std::int64_t until_ns, std::vector<std::int64_t>& late_ns) {
+        for (std::int64_t due_ns = clock_.now_ns() + gap_ns; due_ns <= until_ns;) {
+            const std::int64_t now_ns = clock_.wait_until_ns(due_ns);
+            late_ns.push_back(now_ns - due_ns);
+            if (chip_) {
+                if (Status written = chip_->write(gpio::all_lines(chip_->line_count()), 0);
+                    !written)
+                    return written;
+                samples_.write_ns.push_back(clock_.now_ns() - now_ns);
+            }
+            // As in a print, a late one makes the next ones no sooner.
+            due_ns = now_ns + gap_ns;
+        }
+        return Done{};
+    }
+
+    gpio::Clock& clock_;
+    gpio::GpioChip* chip_;
+    Samples samples_;
+};
+
+std::vector<std::uint64_t> histogram_of(const Samples& samples) {
+    std::vector<std::uint64_t> buckets;
+    for (const auto* times : {&samples.asleep_ns, &samples.awake_ns})
+        for (const std::int64_t late_ns : *times) {
+            const auto late_us = static_cast<std::uint64_t>(late_ns / 1'000);
+            const auto bucket = static_cast<std::size_t>(std::bit_width(late_us));
+            if (bucket >= buckets.size()) buckets.resize(bucket + 1);
+            ++buckets[bucket];
+        }
+    return buckets;
+}
+
+std::string row(const char* what, const Spread& spread) {
+    return formatted("# %-28s %9zu  %10.1f %10.1f %10.1f\n", what, spread.count,
+                     static_cast<double>(spread.median_ns) / ns_per_us,
+                     static_cast<double>(spread.rare_ns) / ns_per_us,
+                     static_cast<double>(spread.worst_ns) / ns_per_us);
+}
+
+}  // namespace
+
+Spread spread_of(std::vector<std::int64_t>& times_ns) {
+    if (times_ns.empty()) return {};
+    std::sort(times_ns.begin(), times_ns.end());
+    const std::size_t count = times_ns.size();
+    constexpr std::size_t rare = 10'000;
+    return {count, times_ns[count / 2], times_ns[count - 1 - count / rare], times_ns.back()};
+}
+
+Result<LatencyReport> measure_latency(const LatencyJob& job, gpio::Clock& clock,
+                                      gpio::GpioChip* chip) {
+    Result<Samples> samples = Measurement(clock, chip).run(job.seconds);
+    if (!samples) return samples.error();
+    LatencyReport report;
+    report.printer = job.printer.name;
+    report.histogram = histogram_of(*samples);
+    report.asleep = spread_of(samples->asleep_ns);
+    report.awake = spread_of(samples->awake_ns);
+    if (chip) report.write = spread_of(samples->write_ns);
+    config::Printer measured = job.printer;
+    measured.timing.late_ns = std::max(report.asleep.rare_ns, report.awake.rare_ns);
+    if (report.write) measured.timing.write_ns = report.write->rare_ns;
+    report.steps_per_s = config::held_steps_per_s(measured);
+    return report;
+}
+
+Result<LatencyReport> measure_latency(const LatencyJob& job) {
+    std::unique_ptr<gpio::GpioChip> chip;
+    if (job.lines) {
+        const Result<std::vector<gpio::LineRequest>> requests = run::line_requests(job.printer);
+        if (!requests) return requests.error();
+        Result<std::unique_ptr<gpio::GpioChip>> opened = gpio::open_gpiod_chip(*requests);
+        if (!opened) return opened.error();
+        chip = std::move(*opened);
+    }
+    gpio::MonotonicClock clock;
+    Result<LatencyReport> report = LatencyReport{};
+    Diagnostics warnings;
+    const Load load;
+    std::thread([&] {
+        run::lock_memory(warnings);
+        run::take_precedence(warnings);
+        report = measure_latency(job, clock, chip.get());
+    }).join();
+    if (report) report->warnings = std::move(warnings);
+    return report;
+}
+
+std::string text_of(const LatencyReport& report) {
+    std::string text = "# Timing of the board of \"" + escaped(report.printer) + "\".\n" +
+                       formatted("# %-28s %9s  %10s %10s %10s\n", "microseconds", "count", "median",
+                                 "1 in 10^4", "worst");
+    text += row("a wait ended late, asleep", report.asleep);
+    text += row("a wait ended late, awake", report.awake);
+    if (report.write)
+        text += row("a write to all lines took", *report.write);
+    else
+        text += "# No line was written (--lines writes those of the motors, inactive).\n";
+    for (std::size_t i = 0; i < report.histogram.size(); ++i)
+        if (report.histogram[i])
+            text += formatted("# waits less than %9llu us late: %llu\n", 1ULL << i,
+                              static_cast<unsigned long long>(report.histogram[i]));
+    text += formatted(
+        "# All motors can step at %.0f steps a second each. For printer.toml:\n[timing]\n",
+        report.steps_per_s);
+    const std::int64_t late_ns = std::max(report.asleep.rare_ns, report.awake.rare_ns);
+    text += formatted("late_us = %.1f\n", static_cast<double>(late_ns) / ns_per_us);
+    if (report.write)
+        text +=
+            formatted("write_us = %.1f\n", static_cast<double>(report.write->rare_ns) / ns_per_us);
+    return text;
+}
+
+}  // namespace lyr::board

@@ -1,0 +1,105 @@
+// Contract of target/board/latency.h, by number, on a clock that is late as told.
+
+#include "target/board/latency.h"
+
+#include <doctest/doctest.h>
+
+#include "target/gpio/mock_chip.h"
+
+using namespace lyr;
+using namespace lyr::board;
+
+namespace {
+
+LatencyJob job_of(double seconds) {
+    return {config::generic_printer(), seconds, false};
+}
+
+}  // namespace
+
+TEST_CASE("latency 1: one wait in 10,000 is later than what is rare, and none than the worst") {
+    std::vector<std::int64_t> times;
+    CHECK(spread_of(times).count == 0);
+    for (std::int64_t i = 20'000; i > 0; --i) times.push_back(i);
+    const Spread spread = spread_of(times);
+    CHECK(spread.count == 20'000);
+    CHECK(spread.median_ns == 10'001);
+    CHECK(spread.rare_ns == 19'998);
+    CHECK(spread.worst_ns == 20'000);
+    std::vector<std::int64_t> few{3, 1, 2};
+    CHECK(spread_of(few).rare_ns == 3);
+}
+
+TEST_CASE("latency 1, 3: both kinds of wait are measured, and the keys are those of the later") {
+    std::uint64_t waits = 0;
+    // Every 5,000th is 200 us late, the others 3 us.
+    gpio::VirtualClock clock([&](std::int64_t) { return ++waits % 5'000 ? 3'000 : 200'000; });
+    const auto report = measure_latency(job_of(20), clock, nullptr);
+    REQUIRE(report.ok());
+    CHECK(report->asleep.count + report->awake.count == waits);
+    CHECK(report->asleep.count == doctest::Approx(10'000).epsilon(0.02));
+    CHECK(report->awake.count == doctest::Approx(200'000).epsilon(0.1));
+    CHECK(report->awake.median_ns == 3'000);
+    CHECK(report->awake.rare_ns == 200'000);
+    CHECK_FALSE(report->write);
+    std::uint64_t counted = 0;
+    for (const std::uint64_t bucket : report->histogram) counted += bucket;
+    CHECK(counted == waits);
+    // 200 us, and eight edges of 2 us that are 2 us apart.
+    CHECK(report->steps_per_s == doctest::Approx(1e9 / 232'000));
+}
+
+TEST_CASE("latency 2: lines are written, inactive as they were, and the write is timed") {
+    gpio::VirtualClock clock;
+    std::uint64_t writes = 0, active = 0;
+    gpio::MockChip chip(8, clock, [&](const gpio::LineWrite& write) {
+        active += write.levels != 0;
+        clock.advance_ns(++writes % 1'000 ? 1'500 : 9'000);
+    });
+    const auto report = measure_latency(job_of(2), clock, &chip);
+    REQUIRE(report.ok());
+    REQUIRE(report->write);
+    CHECK(active == 0);
+    CHECK(writes == report->write->count);
+    CHECK(report->write->median_ns == 1'500);
+    CHECK(report->write->rare_ns == 9'000);
+    CHECK(report->write->worst_ns == 9'000);
+}
+
+TEST_CASE("latency 2: a write that fails ends the measurement") {
+    gpio::VirtualClock clock;
+    gpio::MockChip chip(8, clock, {}, [](std::uint64_t number) -> std::optional<Diagnostic> {
+        if (number != 3) return std::nullopt;
+        return Diagnostic{Severity::error, ExitStatus::machine, "bus error", {}};
+    });
+    const auto report = measure_latency(job_of(2), clock, &chip);
+    REQUIRE_FALSE(report.ok());
+    CHECK(report.error().message == "bus error");
+}
+
+TEST_CASE("latency 4: what is told can be put into the printer's file as it is") {
+    gpio::VirtualClock clock([](std::int64_t) { return 12'300; });
+    gpio::MockChip chip(8, clock, [&](const gpio::LineWrite&) { clock.advance_ns(4'500); });
+    const auto report = measure_latency(job_of(1), clock, &chip);
+    REQUIRE(report.ok());
+    const std::string axis =
+        "\nsteps_per_mm = 80\nmax_speed_mm_s = 100\nmax_acceleration_mm_s2 = 1000\n";
+    std::string file = text_of(*report);
+    for (const char* name : {"x", "y", "z"})
+        file += std::string("[axis.") + name + "]\nrange_mm = [0, 200]" + axis;
+    file += "[axis.e]" + axis;
+    const auto printer = config::parse_printer(file, "printer.toml");
+    REQUIRE_MESSAGE(printer.ok(), to_string(printer.error()));
+    CHECK(printer->timing.late_ns == 12'300);
+    CHECK(printer->timing.write_ns == 4'500);
+    CHECK(config::held_steps_per_s(*printer) == doctest::Approx(report->steps_per_s));
+}
+
+TEST_CASE("latency: a real measurement ends after the time asked for") {
+    const auto report = measure_latency(job_of(0.2));
+    REQUIRE(report.ok());
+    CHECK(report->asleep.count > 10);
+    CHECK(report->awake.count > 10);
+    CHECK(report->asleep.worst_ns >= report->asleep.median_ns);
+    CHECK(report->steps_per_s > 0);
+}
