@@ -2,6 +2,7 @@
 # make demo       slices the gearbox base, simulates the print, draws a layer and a page: all into demo/
 # make test       builds and runs every test
 # make test-bits  a million random bits of a large print flipped, one at a time: both readers find each
+# make test-kernel   boots Debian's kernel in QEMU and prints there, on simulated lines: docs/kernel-test.md
 # make sanitize   the same tests under the address and undefined-behaviour sanitizers, into build-sanitize/
 # make test-klipper KLIPPER=checkout   both show pieces as G-code through Klipper's own batch mode (needs: tools/setup
 #                 --klipper); docs/exports.md
@@ -18,7 +19,7 @@ LYR_BENCH_FILES ?= fixtures/parts
 LYR_BENCH_SET   = --set perimeters.count=3 --set infill.density=15% --set infill.pattern=grid
 CTEST   = ctest --output-on-failure -j $(JOBS)
 
-.PHONY: all setup test-setup demo test test-bits test-klipper sanitize board bench install clean
+.PHONY: all setup test-setup demo test test-bits test-kernel test-klipper sanitize board bench install clean
 
 all: setup
 	cmake -S . -B $(BUILD) -DCMAKE_BUILD_TYPE=Release
@@ -46,6 +47,12 @@ test-bits: all
 	cmake --build $(BUILD) -j $(JOBS) --target flipped_bits
 	$(BUILD)/stepc fixtures/parts/lower_teeth.step -o $(BUILD)/lower_teeth.lyr
 	$(BUILD)/flipped_bits $(BUILD)/lower_teeth.lyr
+
+test-kernel: all
+	@tools/setup --kernel
+	cmake --build $(BUILD) -j $(JOBS) --target test_gpio
+	tests/linux/sim/kernel build-kernel
+	tests/linux/sim/run $(BUILD) build-kernel
 
 test-klipper: all
 	@mkdir -p build-klipper
@@ -79,4 +86,4 @@ install: all
 	cmake --install $(BUILD) --prefix $(PREFIX)
 
 clean:
-	rm -rf build build-sanitize build-board build-bench build-klipper demo
+	rm -rf build build-sanitize build-board build-bench build-kernel build-klipper demo

@@ -1,0 +1,48 @@
+# Functions for the scripts that boot a guest; sourced. `here` is this folder.
+
+# The print of all guests: lines, arcs and retractions in half a minute, 15 thick layers of a pulley with one wall.
+slice_print() {
+    "$1/stepc" "$here/../../fixtures/parts/transmission_pulley_at3_t10_center.step" -o print.lyr --layer-height 0.6 \
+        --set nozzle.diameter=0.8 --set perimeters.count=1 --set infill.density=0% --set skin.top_layers=0 \
+        --set skin.bottom_layers=0 > print.log 2>&1
+}
+
+# simulate LYRRUN OPTIONS: the same print on the same machine, as a wave.
+simulate() {
+    lyrrun=$1
+    shift
+    "$lyrrun" print.lyr --printer printer.toml --simulate "$@" > simulated.log 2>&1
+}
+
+# start_guest BUSYBOX CASES: with the print and printer.toml of the folder in which it is called.
+start_guest() {
+    rm -rf guest
+    mkdir -p guest/bin guest/dev guest/proc guest/sys guest/modules
+    cp "$1" guest/bin/busybox
+    cp "$2" guest/cases
+    cp "$here/init" print.lyr printer.toml guest
+}
+
+# boot QEMU OPTIONS: until the guest says that it is done. The clock of the guest counts instructions, two nanoseconds
+# each, and skips idle time: what is recorded does not depend on how fast or busy this machine is.
+boot() {
+    (cd guest && find . | cpio -o -H newc --quiet | gzip -1) > initramfs
+    rm -f console
+    machine=$1
+    shift
+    "$machine" -display none -no-reboot -icount shift=1,sleep=off -initrd initramfs -serial file:console "$@" < /dev/null &
+    qemu=$!
+    limit_s=900
+    until grep -qs "^init: " console; do
+        limit_s=$((limit_s - 1))
+        [ $limit_s -gt 0 ] && kill -0 $qemu 2> /dev/null || break
+        sleep 1
+    done
+    # Some machines stay when the guest has halted.
+    kill $qemu 2> /dev/null || true
+    wait $qemu 2> /dev/null || true
+    grep -q "^init: done" console && return
+    tail -n 30 console >&2
+    echo "the guest did not finish" >&2
+    exit 1
+}
