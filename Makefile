@@ -2,7 +2,8 @@
 # make demo       slices the gearbox base, simulates the print, draws a layer and a page: all into demo/
 # make test       builds and runs every test
 # make test-bits  a million random bits of a large print flipped, one at a time: both readers find each
-# make test-kernel   boots Debian's kernel in QEMU and prints there, on simulated lines: docs/kernel-test.md
+# make test-kernel     boots Debian's kernel in QEMU and prints there, on simulated lines: docs/kernel-test.md
+# make test-kernel-pi  the same on QEMU's Raspberry Pi 3, with lyrrun built for it
 # make sanitize   the same tests under the address and undefined-behaviour sanitizers, into build-sanitize/
 # make test-klipper KLIPPER=checkout   both show pieces as G-code through Klipper's own batch mode (needs: tools/setup
 #                 --klipper); docs/exports.md
@@ -19,7 +20,7 @@ LYR_BENCH_FILES ?= fixtures/parts
 LYR_BENCH_SET   = --set perimeters.count=3 --set infill.density=15% --set infill.pattern=grid
 CTEST   = ctest --output-on-failure -j $(JOBS)
 
-.PHONY: all setup test-setup demo test test-bits test-kernel test-klipper sanitize board bench install clean
+.PHONY: all setup test-setup demo test test-bits test-kernel test-kernel-pi test-klipper sanitize board bench install clean
 
 all: setup
 	cmake -S . -B $(BUILD) -DCMAKE_BUILD_TYPE=Release
@@ -54,6 +55,12 @@ test-kernel: all
 	tests/linux/sim/kernel build-kernel
 	tests/linux/sim/run $(BUILD) build-kernel
 
+test-kernel-pi: all
+	@tools/setup --kernel-pi
+	tests/linux/pi/kernel build-kernel-pi
+	tests/linux/pi/build build-kernel-pi
+	tests/linux/pi/run $(BUILD) build-kernel-pi
+
 test-klipper: all
 	@mkdir -p build-klipper
 	$(BUILD)/stepc fixtures/parts/gearbox_base.step -o build-klipper/gearbox.gcode --set gcode.flavor=klipper
@@ -86,4 +93,4 @@ install: all
 	cmake --install $(BUILD) --prefix $(PREFIX)
 
 clean:
-	rm -rf build build-sanitize build-board build-bench build-kernel build-klipper demo
+	rm -rf build build-sanitize build-board build-bench build-kernel build-kernel-pi build-klipper demo

@@ -3,8 +3,9 @@
 
     check.py sim|pi FOLDER
 
-FOLDER has the printer's file, the table of named lines, the folder that init filled, and cold.vcd and hot.vcd, the waves
-of the same print simulated without and with heat. Prints a line for each check and ends with status 1 if one failed.
+FOLDER has the printer's file, the table of named lines, the folder that init filled, and cold.vcd and hot.vcd, the
+waves of the same print simulated without and with heat. Prints a line for each check and ends with status 1 if one
+failed.
 """
 
 import pathlib

@@ -23,14 +23,15 @@ start_guest() {
     cp "$here/init" print.lyr printer.toml guest
 }
 
-# boot QEMU OPTIONS: until the guest says that it is done. The clock of the guest counts instructions, two nanoseconds
-# each, and skips idle time: what is recorded does not depend on how fast or busy this machine is.
+# boot MACHINE OPTIONS: until the guest says that it is done. Its clock counts instructions, two nanoseconds each, and
+# skips idle time: what is recorded does not depend on how fast or busy this machine is.
 boot() {
     (cd guest && find . | cpio -o -H newc --quiet | gzip -1) > initramfs
     rm -f console
     machine=$1
     shift
-    "$machine" -display none -no-reboot -icount shift=1,sleep=off -initrd initramfs -serial file:console "$@" < /dev/null &
+    "$machine" -display none -no-reboot -icount shift=1,sleep=off -initrd initramfs -serial file:console \
+        "$@" < /dev/null &
     qemu=$!
     limit_s=900
     until grep -qs "^init: " console; do
