@@ -31,7 +31,7 @@ boot() {
     machine=$1
     shift
     "$machine" -display none -no-reboot -icount shift=1,sleep=off -initrd initramfs -serial file:console \
-        "$@" < /dev/null &
+        "$@" < /dev/null > qemu.log 2>&1 &
     qemu=$!
     limit_s=900
     until grep -qs "^init: " console; do
@@ -43,7 +43,7 @@ boot() {
     kill $qemu 2> /dev/null || true
     wait $qemu 2> /dev/null || true
     grep -q "^init: done" console && return
-    tail -n 30 console >&2
+    tail -n 30 qemu.log console >&2
     echo "the guest did not finish" >&2
     exit 1
 }
