@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Judges what the guest brought back: the kernel's record of every line write beside what lyrrun simulates.
 
-    check.py sim|pi FOLDER
+    check.py FOLDER CASE...
 
 FOLDER has the printer's file, the table of named lines, the folder that init filled, and cold.vcd and hot.vcd, the
 waves of the same print simulated without and with heat. Prints a line for each check and ends with status 1 if one
@@ -31,7 +31,7 @@ class Case:
     """One case of init."""
 
     def __init__(self, board, results, name):
-        self.name, self.folder = name, results / name
+        self.name, self.folder, self.printer = name, results / name, board.printer
         self.entries = list(record.read_record(results, name))
         self.edges = list(record.edges_of(self.entries, board.purpose))
         self.motion = [edge for edge in self.edges if edge.line[0] in AXES and edge.line[1] == "_"]
@@ -50,6 +50,10 @@ class Case:
         status = int(self.text("status"))
         self.check(f"it ended with status {expected}", status == expected,
                    "" if status == expected else f"{status}: {self.text('err')[-300:]}")
+
+    def check_says(self, text, file="err"):
+        said = self.text(file).strip()
+        self.check(f'it says "{text}"', text in said, said.splitlines()[-1] if said else "nothing")
 
     def active_at_end(self):
         last = {edge.line: edge.active for edge in self.edges}
@@ -115,7 +119,7 @@ def widths(edges, line):
     return [fall - rise for rise, fall in zip(times[::2], times[1::2])]
 
 
-def check_times(case, groups, high_us):
+def check_times(case, groups):
     """How far steps are apart, beside what was asked for, and how long they last."""
     asked, got, place = [], [], 0
     for group in groups:
@@ -128,7 +132,7 @@ def check_times(case, groups, high_us):
     longer = (got[-1] - got[0]) / (asked[-1] - asked[0]) - 1
     # A pulse that is asked to be shorter than a write lasts as long as one.
     write_us = min(min(widths(case.motion, axis + "_step")) for axis in AXES) / 1e3
-    case.check("no pulse is too short", write_us >= high_us, f"{write_us:.2f} us")
+    case.check("no pulse is too short", write_us >= case.printer["pulse"]["high_us"], f"{write_us:.2f} us")
     case.check("steps are as far apart as asked for, all but one in a hundred within a write's time",
                abs(centiles[49]) < 1 and centiles[98] < write_us,
                f"least {errors_us[0]:+.2f} us, 1st centile {centiles[0]:+.2f}, median {centiles[49]:+.2f}, "
@@ -160,82 +164,72 @@ def check_heaters_off(case, mark, within_s):
                    f"{len(on)} times on before, off after {max(0, off_s):.3f} s")
 
 
-def check_says(case, text, file="err"):
-    case.check(f'it says "{text}"', text in case.text(file), case.text(file).strip().splitlines()[-1])
+def check_unit(case, waves):
+    case.check_status(0)
+    case.check("no test was left out", "SKIPPED" not in case.text("out"), case.text("out").splitlines()[-2])
 
 
-def check_whole(board, results, waves):
-    cold = Case(board, results, "cold")
-    cold.check_status(0)
-    check_same(cold, waves["cold"])
-    check_times(cold, waves["cold"], board.printer["pulse"]["high_us"])
-
-
-def check_terminated(board, results, waves):
-    stopped = Case(board, results, "terminated")
-    stopped.check_status(8)
-    steps = check_rest(stopped, waves["cold"])
-    last_s = (steps[-1].time_ns - stopped.marks["TERM"]) / NS
-    stopped.check("the head is at rest within a second", last_s < 1, f"{last_s:.3f} s")
-    check_says(stopped, "already held by lyrrun", "second")
-
-
-def check_unit(board, results):
-    unit = Case(board, results, "unit")
-    unit.check_status(0)
-    unit.check("no test was left out", "SKIPPED" not in unit.text("out"), unit.text("out").splitlines()[-2])
-
-
-def check_homed(board, results):
+def check_homed(case, waves):
     """The axes of rails.awk: where they stand after homing is what they were above their contacts, the other way."""
-    if not (results / "homed").exists():
-        print("     homed: left out, this lyrrun has no --home")
-        return
-    homed = Case(board, results, "homed")
-    homed.check_status(0)
-    check_says(homed, "the head is at x 0.000, y 0.000, z 0.000", "out")
-    place = path_of(homed.motion)[-1]
+    case.check_status(0)
+    case.check_says("the head is at x 0.000, y 0.000, z 0.000", "out")
+    place = path_of(case.motion)[-1]
     off = [abs(place[i] - wanted) for i, wanted in enumerate((-240, -160, -300, 0))]
-    homed.check("the axes are at their contacts, within two steps", max(off) <= 2, f"{place}")
+    case.check("the axes are at their contacts, within two steps", max(off) <= 2, f"{place}")
 
 
-def check_heat(board, results, waves):
-    killed = Case(board, results, "killed")
-    killed.check_status(137)
-    check_heaters_off(killed, "KILL", 0.1)
+def check_cold(case, waves):
+    case.check_status(0)
+    check_same(case, waves["cold"])
+    check_times(case, waves["cold"])
 
-    silent = Case(board, results, "silent")
-    silent.check_status(7)
-    check_heaters_off(silent, "STOP", 3.1)
 
-    hot = Case(board, results, "hot")
-    hot.check_status(0)
-    check_same(hot, waves["hot"])
-    waited_s = float((re.search(r"waited ([\d.]+) s", hot.text("out")) or [0, "0"])[1])
-    hot.check("it waited for the temperatures", waited_s > 20, f"{waited_s} s")
-    hot.check("no line is left active", not hot.active_at_end(), f"{hot.active_at_end()}")
+def check_terminated(case, waves):
+    case.check_status(8)
+    steps = check_rest(case, waves["cold"])
+    last_s = (steps[-1].time_ns - case.marks["TERM"]) / NS
+    case.check("the head is at rest within a second", last_s < 1, f"{last_s:.3f} s")
+    case.check_says("already held by lyrrun", "second")
 
-    torn = Case(board, results, "torn")
-    torn.check_status(7)
-    check_heaters_off(torn, "torn", 1)
-    check_rest(torn, waves["hot"])
-    check_says(torn, "a broken wire")
+
+def check_killed(case, waves):
+    case.check_status(137)
+    check_heaters_off(case, "KILL", 0.1)
+
+
+def check_silent(case, waves):
+    case.check_status(7)
+    check_heaters_off(case, "STOP", 3.1)
+
+
+def check_hot(case, waves):
+    case.check_status(0)
+    check_same(case, waves["hot"])
+    waited_s = float((re.search(r"waited ([\d.]+) s", case.text("out")) or [0, "0"])[1])
+    case.check("it waited for the temperatures", waited_s > 20, f"{waited_s} s")
+    case.check("no line is left active", not case.active_at_end(), f"{case.active_at_end()}")
+
+
+def check_torn(case, waves):
+    case.check_status(7)
+    check_heaters_off(case, "torn", 1)
+    check_rest(case, waves["hot"])
+    case.check_says("a broken wire")
+
+
+CHECKS = {"unit": check_unit, "homed": check_homed, "cold": check_cold, "terminated": check_terminated,
+          "killed": check_killed, "silent": check_silent, "hot": check_hot, "torn": check_torn}
 
 
 def main():
-    kind, folder = sys.argv[1], pathlib.Path(sys.argv[2])
+    folder, names = pathlib.Path(sys.argv[1]), sys.argv[2:]
     results = folder / "results"
     board = record.Board(folder / "printer.toml", folder / "lines", results / "chips")
     waves = {path.stem: record.read_wave(path) for path in folder.glob("*.vcd")}
     uptime_s = float((results / "uptime").read_text().split()[0])
     print(f"Linux {(results / 'kernel').read_text().strip()}, {uptime_s:.0f} s of its time")
-    if kind == "sim":
-        check_unit(board, results)
-        check_homed(board, results)
-    check_whole(board, results, waves)
-    check_terminated(board, results, waves)
-    if kind == "sim":
-        check_heat(board, results, waves)
+    for name in names:
+        CHECKS[name](Case(board, results, name), waves)
     print(f"{failures} failed" if failures else "all passed")
     sys.exit(failures > 0)
 

@@ -14,13 +14,16 @@ simulate() {
     "$lyrrun" print.lyr --printer printer.toml --simulate "$@" > simulated.log 2>&1
 }
 
-# start_guest BUSYBOX CASES: with the print and printer.toml of the folder in which it is called.
+# start_guest BUSYBOX CASES NAME...: with the file CASES, of which the cases NAME are to run, and the print and
+# printer.toml of the folder in which it is called.
 start_guest() {
     rm -rf guest
     mkdir -p guest/bin guest/dev guest/proc guest/sys guest/modules
     cp "$1" guest/bin/busybox
     cp "$2" guest/cases
     cp "$here/init" print.lyr printer.toml guest
+    shift 2
+    echo "$@" > guest/wanted
 }
 
 # boot MACHINE OPTIONS: until the guest says that it is done. Its clock counts instructions, two nanoseconds each, and
