@@ -49,17 +49,16 @@ test-bits: all
 	$(BUILD)/stepc fixtures/parts/lower_teeth.step -o $(BUILD)/lower_teeth.lyr
 	$(BUILD)/flipped_bits $(BUILD)/lower_teeth.lyr
 
-test-kernel: all
-	@tools/setup --kernel
+test-kernel: test-setup all
 	cmake --build $(BUILD) -j $(JOBS) --target test_gpio
-	tests/linux/sim/kernel build-kernel
-	tests/linux/sim/run $(BUILD) build-kernel
+	tests/linux/sim/kernel $(BUILD)/linux
+	tests/linux/sim/run $(BUILD) $(BUILD)/linux
 
 test-kernel-pi: all
 	@tools/setup --kernel-pi
-	tests/linux/pi/kernel build-kernel-pi
-	tests/linux/pi/build build-kernel-pi
-	tests/linux/pi/run $(BUILD) build-kernel-pi
+	tests/linux/pi/kernel $(BUILD)/linux-pi
+	tests/linux/pi/build $(BUILD)/linux-pi
+	tests/linux/pi/run $(BUILD) $(BUILD)/linux-pi
 
 test-klipper: all
 	@mkdir -p build-klipper
@@ -93,4 +92,4 @@ install: all
 	cmake --install $(BUILD) --prefix $(PREFIX)
 
 clean:
-	rm -rf build build-sanitize build-board build-bench build-kernel build-kernel-pi build-klipper demo
+	rm -rf build build-sanitize build-board build-bench build-klipper demo
