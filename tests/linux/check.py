@@ -140,15 +140,13 @@ def check_times(case, groups):
 
 
 def check_rest(case, groups):
-    """Stopped on the way: the path up to there is the simulated one, and its last steps are slow."""
+    """Stopped on the way, with the path up to there the simulated one."""
     common = common_edges(case.motion, groups)
     rest = case.motion[common:]
-    steps = [edge for edge in case.motion if edge.active and edge.line.endswith("_step")]
     case.check("the edges up to the stop are the simulated ones", common > 1000, f"{common} edges")
     case.check("then lines only become inactive", not any(edge.active for edge in rest),
                f"{len(rest)} edges {[key(edge) for edge in rest if edge.active]}")
     case.check("no line is left active", not case.active_at_end(), f"{case.active_at_end()}")
-    return steps
 
 
 def check_heaters_off(case, mark, within_s):
@@ -186,9 +184,14 @@ def check_cold(case, waves):
 
 def check_terminated(case, waves):
     case.check_status(8)
-    steps = check_rest(case, waves["cold"])
-    last_s = (steps[-1].time_ns - case.marks["TERM"]) / NS
-    case.check("the head is at rest within a second", last_s < 1, f"{last_s:.3f} s")
+    check_rest(case, waves["cold"])
+    mark_ns = case.marks["TERM"]
+    steps = [edge.time_ns for edge in case.motion if edge.active and edge.line.endswith("_step")]
+    gaps = [later - earlier for earlier, later in zip(steps, steps[1:])]
+    before = statistics.median(gap for gap, end in zip(gaps, steps[1:]) if mark_ns - NS / 10 < end < mark_ns)
+    case.check("the head comes to rest within a second, ever slower",
+               (steps[-1] - mark_ns) / NS < 1 and gaps[-1] > 5 * before,
+               f"{(steps[-1] - mark_ns) / NS:.3f} s; steps {before / 1e6:.2f} ms apart, at last {gaps[-1] / 1e6:.2f}")
     case.check_says("already held by lyrrun", "second")
 
 

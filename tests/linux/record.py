@@ -1,7 +1,7 @@
 """What the kernel recorded in the guest, and what lyrrun simulated, as lists of changes of lines.
 
-A record is that of the event gpio:gpio_value, one entry a line and write, in the pages of the kernel's ring buffer as they
-are read from trace_pipe_raw, one file a processor. Texts of trace_marker stand between.
+A record is that of the event gpio:gpio_value, one entry a line and write, in the pages of the kernel's ring buffer as
+they are read from trace_pipe_raw, one file a processor. Texts of trace_marker stand between.
 """
 
 import heapq
@@ -80,7 +80,7 @@ def read_record(results, case):
 
 
 class Board:
-    """Which line of the guest is for what, after the printer's file, the table of named lines and the chips' numbers."""
+    """Which line of the guest is for what: by the printer's file, the table of named lines and the chips' numbers."""
 
     def __init__(self, printer_path, table_path, chips_path):
         self.printer = tomllib.loads(printer_path.read_text())
