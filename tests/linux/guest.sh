@@ -7,9 +7,9 @@ logged() {
 
 # The print of all guests: 15 thick layers of a pulley with one wall; lines, arcs and retractions in 40 seconds.
 slice_print() {
-    logged "$1/stepc" "$here/../../fixtures/parts/transmission_pulley_at3_t10_center.step" -o print.lyr --layer-height 0.6 \
-        --set nozzle.diameter=0.8 --set perimeters.count=1 --set infill.density=0% --set skin.top_layers=0 \
-        --set skin.bottom_layers=0
+    logged "$1/stepc" "$here/../../fixtures/parts/transmission_pulley_at3_t10_center.step" -o print.lyr \
+        --layer-height 0.6 --set nozzle.diameter=0.8 --set perimeters.count=1 --set infill.density=0% \
+        --set skin.top_layers=0 --set skin.bottom_layers=0
 }
 
 # simulate LYRRUN OPTIONS: the same print on the same machine, as a wave.
