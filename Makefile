@@ -2,6 +2,8 @@
 # make demo       slices the gearbox base, simulates the print, draws a layer and a page: all into demo/
 # make test       builds and runs every test
 # make test-bits  a million random bits of a large print flipped, one at a time: both readers find each
+# make test-kernel     boots Debian's kernel in QEMU and prints there, on simulated lines: docs/kernel-test.md
+# make test-kernel-pi  the same on QEMU's Raspberry Pi 3, with lyrrun built for it
 # make sanitize   the same tests under the address and undefined-behaviour sanitizers, into build-sanitize/
 # make tsan       what runs on a board under the thread sanitizer, into build-tsan/
 # make test-klipper KLIPPER=checkout   both show pieces as G-code through Klipper's own batch mode (needs: tools/setup
@@ -21,7 +23,8 @@ LYR_BENCH_FILES ?= fixtures/parts
 LYR_BENCH_SET   = --set perimeters.count=3 --set infill.density=15% --set infill.pattern=grid
 CTEST   = ctest --output-on-failure -j $(JOBS)
 
-.PHONY: all setup test-setup demo test test-bits test-klipper sanitize tsan board cross test-cross bench install clean
+.PHONY: all setup test-setup demo test test-bits test-kernel test-kernel-pi test-klipper sanitize tsan board cross test-cross \
+        bench install clean
 
 all: setup
 	cmake -S . -B $(BUILD) -DCMAKE_BUILD_TYPE=Release
@@ -50,6 +53,17 @@ test-bits: all
 	cmake --build $(BUILD) -j $(JOBS) --target flipped_bits
 	$(BUILD)/stepc fixtures/parts/lower_teeth.step -o $(BUILD)/lower_teeth.lyr
 	$(BUILD)/flipped_bits $(BUILD)/lower_teeth.lyr
+
+test-kernel: test-setup all
+	cmake --build $(BUILD) -j $(JOBS) --target test_gpio
+	tests/linux/sim/kernel $(BUILD)/linux
+	tests/linux/sim/run $(BUILD) $(BUILD)/linux
+
+test-kernel-pi: all
+	@tools/setup --kernel-pi
+	tests/linux/pi/kernel $(BUILD)/linux-pi
+	tests/linux/pi/build $(BUILD)/linux-pi
+	tests/linux/pi/run $(BUILD) $(BUILD)/linux-pi
 
 test-klipper: all
 	@mkdir -p build-klipper

@@ -1,4 +1,4 @@
-// Times are kept as gaps from the write before, so that lateness adds to everything that follows by
+// Times are kept as gaps from the write before, so that the lateness of a step adds to everything that follows by
 // itself and nothing ever has to be caught up.
 
 #include "target/run/executor.h"
@@ -79,9 +79,11 @@ Result<bool> Executor::run(std::span<const LineEvent> events) {
         if (!begin_ns) return false;
         const std::int64_t late_ns = *begin_ns - due_ns;
         worst_late_ns_ = std::max(worst_late_ns_, late_ns);
-        stretched_ns_ += late_ns;
+        // Only steps move the head: the end of a pulse or a turn that comes late must not slow it down.
+        const bool is_step = (event.levels & ~levels_ & all_step_bits) != 0;
+        if (is_step) stretched_ns_ += late_ns;
         if (late_ns > timing_.late_limit_ns) return too_late(late_ns, timing_.late_limit_ns);
-        last_begin_ns_ = *begin_ns;
+        last_begin_ns_ = is_step ? *begin_ns : due_ns;
         if (((event.levels ^ levels_) & all_mark_bits) && !pass_mark(event)) return false;
         if (Status written = write(event, last_begin_ns_); !written) return written.error();
         ++taken_;

@@ -4,11 +4,11 @@
 // Contract
 //  1. Every event is written once, in order, never before its time. The time base starts with the first
 //     event, at the moment when execute() is first called.
-//  2. A late event delays all that follow: the time between two writes is never less than between
-//     their events. No event is left out to catch up.
-//  3. A write that takes long counts as late too: from the end of one write to the begin of a later
-//     one there is at least the time between their events, or edge_gap_ns if that is less. So the times
-//     of pulses and direction lines hold in any weather.
+//  2. A late step delays all that follow: from one step to a later one there is never less time than between their
+//     events. No event is left out to catch up. The end of a pulse and a turn may come late without delaying more than 3
+//     asks: where a write takes as long as a pulse, they always do.
+//  3. From the end of one write to the begin of a later one there is at least the time between their events, or
+//     edge_gap_ns if that is less. So the times of pulses and direction lines hold in any weather.
 //  4. An event that comes later than late_limit_ns ends the print with a diagnostic (status machine).
 //  5. After a first request to stop, time is stretched more and more, so that the head comes to rest on
 //     its path within about braking_ns and no axis loses steps; then execute() returns false. A second
@@ -122,7 +122,7 @@ private:
     std::size_t taken_ = 0;
     gpio::LineMask levels_ = 0;
     std::int64_t last_event_ns_ = 0;
-    std::int64_t last_begin_ns_ = 0;  // of the last write, on the clock
+    std::int64_t last_begin_ns_ = 0;  // of the last write, on the clock; of one without a step, when it was due
     std::int64_t last_end_ns_ = 0;
     double pace_ = 1;  // of time: 1 full speed, 0 rest
     std::int64_t stretched_ns_ = 0;
