@@ -106,9 +106,9 @@ void add_options(CLI::App& app, Arguments& arguments) {
              "standard input");
     add_file(app, "--script", arguments.script_path,
              "Ask things of the simulated print: one TIME_S COMMAND a line; -: standard input");
-    add_flag(
-        app, "--resume", arguments.resume,
-        "Go on at the layer in which the print was cut off; the head is at start_mm in x and y");
+    add_flag(app, "--resume", arguments.resume,
+             "Go on at the layer in which the print was cut off; without endstops the head must be "
+             "at start_mm in x and y");
     add_flag(app, "--resumable", arguments.resumable,
              "Tell what --resume would go on with, and do nothing");
     add_text(
@@ -212,8 +212,8 @@ Status simulate(const Arguments& arguments, const config::Printer& printer) {
     Result<std::vector<thermal::Fault>> faults = read_faults(arguments, printer);
     if (!faults) return faults.error();
     std::string homing;
-    if (home::homes_before_print(printer)) {
-        const auto homed = home::home({printer, true, *faults}, home::homable(printer), {});
+    if (const auto axes = home::homed_before_print(printer, arguments.resume); axes.any()) {
+        const auto homed = home::home({printer, true, *faults}, axes, {});
         if (!homed) return homed.error();
         homing = home::text_of(*homed);
         homing.resize(homing.find('\n') + 1);  // where the head was then is of no use any more
@@ -255,13 +255,14 @@ Status print(const Arguments& arguments, const config::Printer& printer) {
     Result<PrintServer> server = PrintServer::open(arguments.socket, printer, control);
     if (!server) return server.error();
     run::PrintJob job{arguments.lyr_path, printer, arguments.no_heat, shown_on(line)};
-    if (home::homes_before_print(printer))
-        job.before = [&printer](gpio::GpioChip& chip, gpio::Clock& clock) {
+    job.resumption = std::move(*resumption);
+    job.is_lifted = home::homed_before_print(printer, arguments.resume).any();
+    if (job.is_lifted)
+        job.before = [&job](gpio::GpioChip& chip, gpio::Clock& clock) {
             const run::StopSignals signals;
-            return home::home_before_print(printer, chip, clock, signals);
+            return home::home_before_print(job.printer, job.resumption, chip, clock, signals);
         };
     if (!arguments.dry_run) job.journal = run::journal_path(printer, arguments.lyr_path);
-    job.resumption = std::move(*resumption);
     job.control = &control;
     job.begun = [&] { show(program, server->start()); };
     const Result<run::PrintReport> report = arguments.dry_run ? run::dry_run(job) : run::print(job);

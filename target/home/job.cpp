@@ -1,5 +1,6 @@
 #include "target/home/job.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/text.h"
@@ -100,19 +101,39 @@ Result<Report> home(const Job& job, AxisSet axes, const std::optional<motion::Po
     return report;
 }
 
-bool homes_before_print(const config::Printer& printer) {
-    return printer.homing.before_print && homable(printer).any();
+AxisSet homed_before_print(const config::Printer& printer, bool resumes) {
+    if (!printer.homing.before_print) return {};
+    AxisSet axes = homable(printer);
+    if (resumes && printer.kinematics != config::Kinematics::delta) axes.reset(config::axis_z);
+    return axes;
 }
 
-Status home_before_print(const config::Printer& printer, gpio::GpioChip& chip, gpio::Clock& clock,
-                         const run::StopSignals& signals) {
+Status home_before_print(const config::Printer& printer,
+                         const std::optional<run::Resumption>& resumption, gpio::GpioChip& chip,
+                         gpio::Clock& clock, const run::StopSignals& signals) {
     const Result<std::unique_ptr<gpio::InputLines>> inputs = open_inputs(printer);
     if (!inputs) return inputs.error();
     Mover mover(printer, chip, clock, inputs->get(), &signals);
-    const Result<Homed> homed = home(mover, printer, homable(printer));
+    return home_before_print(mover, printer, resumption);
+}
+
+Status home_before_print(Mover& mover, const config::Printer& printer,
+                         const std::optional<run::Resumption>& resumption) {
+    const AxisSet axes = homed_before_print(printer, resumption.has_value());
+    config::Printer machine = resumption ? run::lifted(printer, *resumption) : printer;
+    const bool finds_z = axes[config::axis_z];
+    motion::Point start = start_of(machine);
+    if (resumption && !finds_z) {
+        const motion::Point found{start.x, start.y, resumption->stopped_z_mm};
+        if (Status lifted = travel(mover, printer, found, start); !lifted) return lifted;
+        machine.homing.lift_mm = std::max(
+            0.0, std::min(machine.homing.lift_mm, printer.axes[config::axis_z].max_mm - start.z));
+    }
+    const Result<Homed> homed = home(mover, machine, axes);
     if (!homed) return homed.error();
-    motion::Point start = start_of(printer);
-    if (const auto bed = moves::bed_of(printer)) start.z += bed->lift_mm(start);
+    // How much higher the bed was where the print was cut off is not known.
+    const auto bed = moves::bed_of(printer);
+    if (bed && (finds_z || !resumption)) start.z += bed->lift_mm(start);
     return travel(mover, printer, homed->head, start);
 }
 

@@ -5,6 +5,9 @@
 //  2. Afterwards all lines are inactive and released, so that the motors are off and the place is lost: a print homes
 //     again. home_before_print() leaves the motors on, for a print on the same lines.
 //  3. A jog ends within the ranges of the printer's file, or is refused (status machine) before it moves.
+//  4. Before a print that resumes, the nozzle stands in the part: nothing moves sideways before it was lifted, and only x
+//     and y are homed, the height being that of the resumption. A delta, which homes upwards, finds its height too. The
+//     print begins where run::lifted() says.
 
 #pragma once
 
@@ -13,6 +16,7 @@
 #include <string>
 
 #include "target/home/homing.h"
+#include "target/run/resumption.h"
 #include "target/thermal/faults.h"
 
 namespace lyr::home {
@@ -38,10 +42,13 @@ Status with_machine(const Job& job, Diagnostics& warnings, const Work& work);
 // Homes, and goes to the start of a print; a jog, where given, follows. Without axes to home, a jog is one from there.
 Result<Report> home(const Job& job, AxisSet axes, const std::optional<motion::Point>& jog_mm);
 
-// Whether a print on this printer begins with homing.
-bool homes_before_print(const config::Printer& printer);
-Status home_before_print(const config::Printer& printer, gpio::GpioChip& chip, gpio::Clock& clock,
-                         const run::StopSignals& signals);
+// What a print on this printer begins with homing; none: with nothing.
+AxisSet homed_before_print(const config::Printer& printer, bool resumes);
+Status home_before_print(const config::Printer& printer,
+                         const std::optional<run::Resumption>& resumption, gpio::GpioChip& chip,
+                         gpio::Clock& clock, const run::StopSignals& signals);
+Status home_before_print(Mover& mover, const config::Printer& printer,
+                         const std::optional<run::Resumption>& resumption);
 
 std::string text_of(const Report& report);
 

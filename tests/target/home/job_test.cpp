@@ -1,0 +1,45 @@
+// Contract of target/home/job.h, by number, on simulated machines.
+
+#include "target/home/job.h"
+
+#include "target/home/scene.h"
+
+using namespace lyr;
+using namespace lyr::tests;
+using config::Kinematics;
+
+TEST_CASE("homing before a print 4: one that resumes lifts first, and takes its height as it is") {
+    for (const Kinematics kind : {Kinematics::cartesian, Kinematics::corexy, Kinematics::delta}) {
+        CAPTURE(static_cast<int>(kind));
+        config::Printer printer = machine_of(kind);
+        const bool is_delta = kind == Kinematics::delta;
+        run::Resumption resumption;
+        resumption.stopped_z_mm = 10;
+        printer.start_mm = is_delta ? std::array{0.0, 0.0, 30.0} : std::array{20.0, 20.0, 0.2};
+        printer.simulated.head_mm =
+            is_delta ? std::array{40.0, 30.0, 10.0} : std::array{120.0, 100.0, 10.0};
+        // What was printed stands higher than the nozzle on the way to the endstop of x.
+        if (!is_delta) printer.simulated.bumps = {{60, 100, 11, 20}};
+        printer.homing.lift_mm = 0;
+        printer.endstops[config::axis_z].at_high_end = is_delta;
+        Scene scene(printer);
+        const Status homed = home::home_before_print(scene.mover, printer, resumption);
+        REQUIRE_MESSAGE(homed.ok(), homed.error().message);
+        const std::array<double, 3> start = run::lifted(printer, resumption).start_mm;
+        CHECK(start[config::axis_z] == 10 + printer.pause.lift_mm);
+        CHECK(scene.off_steps({start[0], start[1], start[2]}) <= 1.01);
+        if (!is_delta) CHECK(scene.machine.lowest_mm() > 0);
+    }
+}
+
+TEST_CASE("homing before a print 4: without endstops of x and y none resumes with homing") {
+    config::Printer printer = machine_of(Kinematics::cartesian);
+    CHECK(home::homed_before_print(printer, false) == home::AxisSet(0b111));
+    CHECK(home::homed_before_print(printer, true) == home::AxisSet(0b011));
+    printer.endstops[config::axis_x].input.reset();
+    printer.endstops[config::axis_y].input.reset();
+    CHECK(home::homed_before_print(printer, true).none());
+    CHECK(home::homed_before_print(printer, false).any());
+    printer.homing.before_print = false;
+    CHECK(home::homed_before_print(printer, false).none());
+}
