@@ -39,6 +39,40 @@ std::optional<motion::Point> way_of(const std::string& text) {
     return way;
 }
 
+Status keep(const config::Printer& printer) {
+    Result<ReplaceFile> file = ReplaceFile::open(printer.calibration_file);
+    if (!file) return file.error();
+    file->write(home::calibration_toml(printer));
+    return file->commit();
+}
+
+Status calibrate(const Program& program, std::vector<home::Calibration> wanted, home::Job job) {
+    if (wanted.empty()) {
+        if (job.printer.kinematics == config::Kinematics::delta)
+            wanted.push_back(home::Calibration::delta);
+        wanted.push_back(home::Calibration::mesh);
+    }
+    std::string text = '"' + job.printer.name + '"' + (job.simulate ? ", simulated\n" : "\n");
+    ProgressLine line;
+    for (const home::Calibration what : wanted) {
+        const std::string name(home::calibration_names[static_cast<std::size_t>(what)]);
+        const auto found = home::calibrate(job, what, [&](std::size_t done, std::size_t of) {
+            line.show(name + ": place " + std::to_string(done + 1) + " of " + std::to_string(of));
+        });
+        line.clear();
+        if (!found) return found.error();
+        show(program, found->warnings);
+        text += found->text;
+        job.printer = found->printer;
+    }
+    if (job.printer.calibration_file.empty())
+        return tell(text +
+                    "The printer's file names no calibration_file to keep this in; it is\n\n" +
+                    home::calibration_toml(job.printer));
+    if (const Status kept = keep(job.printer); !kept) return kept;
+    return tell(text + "  kept in " + job.printer.calibration_file + '\n');
+}
+
 }  // namespace
 
 void add_place_options(CLI::App& app, PlaceArguments& arguments) {
@@ -80,44 +114,6 @@ void add_place_options(CLI::App& app, PlaceArguments& arguments) {
         "the heights")
         ->expected(0, 1);
 }
-
-namespace {
-
-Status keep(const config::Printer& printer) {
-    Result<ReplaceFile> file = ReplaceFile::open(printer.calibration_file);
-    if (!file) return file.error();
-    file->write(home::calibration_toml(printer));
-    return file->commit();
-}
-
-Status calibrate(const Program& program, std::vector<home::Calibration> wanted, home::Job job) {
-    if (wanted.empty()) {
-        if (job.printer.kinematics == config::Kinematics::delta)
-            wanted.push_back(home::Calibration::delta);
-        wanted.push_back(home::Calibration::mesh);
-    }
-    std::string text = '"' + job.printer.name + '"' + (job.simulate ? ", simulated\n" : "\n");
-    ProgressLine line;
-    for (const home::Calibration what : wanted) {
-        const std::string name(home::calibration_names[static_cast<std::size_t>(what)]);
-        const auto found = home::calibrate(job, what, [&](std::size_t done, std::size_t of) {
-            line.show(name + ": place " + std::to_string(done + 1) + " of " + std::to_string(of));
-        });
-        line.clear();
-        if (!found) return found.error();
-        show(program, found->warnings);
-        text += found->text;
-        job.printer = found->printer;
-    }
-    if (job.printer.calibration_file.empty())
-        return tell(text +
-                    "The printer's file names no calibration_file to keep this in; it is\n\n" +
-                    home::calibration_toml(job.printer));
-    if (const Status kept = keep(job.printer); !kept) return kept;
-    return tell(text + "  kept in " + job.printer.calibration_file + '\n');
-}
-
-}  // namespace
 
 Status work_place(const Program& program, const PlaceArguments& arguments, const home::Job& job) {
     if (arguments.calibrate) return calibrate(program, *arguments.calibrate, job);

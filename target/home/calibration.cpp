@@ -35,7 +35,7 @@ Status check_possible(const config::Printer& printer, Calibration what) {
     return Done{};
 }
 
-// Seven places around the middle and six further out; the towers' sides and what is between them.
+// The middle, and two rings of six: beside the towers and between them.
 std::vector<Spot> delta_spots(const config::Printer& printer) {
     const auto& offset = printer.probe->offset_mm;
     const double reach_mm = printer.delta.reach_mm - std::hypot(offset[0], offset[1]);
@@ -89,6 +89,28 @@ Spot probe_spot(const config::Printer& printer) {
     return {place[0], place[1]};
 }
 
+std::vector<Spot> spots_of(const config::Printer& printer, Calibration what) {
+    switch (what) {
+        case Calibration::probe:
+            return {probe_spot(printer)};
+        case Calibration::delta:
+            return delta_spots(printer);
+        case Calibration::mesh:
+            return mesh_spots(printer.mesh);
+    }
+    return {};
+}
+
+Status check_reached(const config::Printer& printer, const std::vector<Spot>& spots) {
+    for (const Spot& spot : spots)
+        if (!reaches(printer, spot))
+            return refused(
+                formatted("the probe cannot get to x %g, y %g: see mesh.area_mm and "
+                          "probe.offset_mm",
+                          spot.x_mm, spot.y_mm));
+    return Done{};
+}
+
 // Over where the probe, whose offset may not be known yet, surely is not in the bed.
 double safe_height_mm(const config::Printer& printer) {
     const config::Probe& probe = *printer.probe;
@@ -103,8 +125,8 @@ void note_calibrated(config::Printer& printer, std::initializer_list<const char*
             printer.calibrated.emplace_back(key);
 }
 
-std::string calibrate_probe(config::Printer& printer,
-                            const std::vector<ByAxes::Positions>& touched) {
+Result<std::string> calibrate_probe(config::Printer& printer,
+                                    const std::vector<ByAxes::Positions>& touched) {
     printer.probe->offset_mm[2] = touched.front()[axis_z];
     note_calibrated(printer, {"probe.offset_mm"});
     return formatted("  the probe triggers with the nozzle %.3f mm over the bed\n",
@@ -143,8 +165,8 @@ Result<std::string> calibrate_delta(config::Printer& printer,
                      before_mm, after_mm);
 }
 
-std::string calibrate_mesh(config::Printer& printer,
-                           const std::vector<ByAxes::Positions>& touched) {
+Result<std::string> calibrate_mesh(config::Printer& printer,
+                                   const std::vector<ByAxes::Positions>& touched) {
     config::BedMesh& mesh = printer.mesh;
     const auto columns = static_cast<std::size_t>(mesh.points[0]);
     mesh.heights_mm.assign(static_cast<std::size_t>(mesh.points[1]), std::vector<double>(columns));
@@ -158,6 +180,14 @@ std::string calibrate_mesh(config::Printer& printer,
     }
     note_calibrated(printer, {"mesh.area_mm", "mesh.points", "mesh.heights_mm"});
     return formatted("  the bed is from %.3f to %.3f mm high\n", low_mm, high_mm);
+}
+
+template <class List>
+std::string list_of(const List& values, const char* format) {
+    std::string text = "[";
+    for (std::size_t i = 0; i < values.size(); ++i)
+        text += (i == 0 ? "" : ", ") + formatted(format, static_cast<double>(values[i]));
+    return text + ']';
 }
 
 Result<std::vector<ByAxes::Positions>> touch_all(Mover& mover, const config::Printer& printer,
@@ -193,15 +223,8 @@ Result<Calibrated> calibrate(const Job& job, Calibration what, const ProbeProgre
         printer.mesh.area_mm = mesh_area(printer);
         printer.mesh.has_area = true;
     }
-    const std::vector<Spot> spots = what == Calibration::probe   ? std::vector{probe_spot(printer)}
-                                    : what == Calibration::delta ? delta_spots(printer)
-                                                                 : mesh_spots(printer.mesh);
-    for (const Spot& spot : spots)
-        if (!reaches(printer, spot))
-            return refused(
-                formatted("the probe cannot get to x %g, y %g: see mesh.area_mm and "
-                          "probe.offset_mm",
-                          spot.x_mm, spot.y_mm));
+    const std::vector<Spot> spots = spots_of(printer, what);
+    if (Status all = check_reached(printer, spots); !all) return all.error();
     std::vector<ByAxes::Positions> touched;
     const Status done = with_machine(job, result.warnings, [&](Mover& mover) -> Status {
         Result<std::vector<ByAxes::Positions>> all = touch_all(mover, printer, spots, progress);
@@ -210,26 +233,13 @@ Result<Calibrated> calibrate(const Job& job, Calibration what, const ProbeProgre
         return Done{};
     });
     if (!done) return done.error();
-    if (what == Calibration::probe) result.text = calibrate_probe(printer, touched);
-    if (what == Calibration::mesh) result.text = calibrate_mesh(printer, touched);
-    if (what != Calibration::delta) return result;
-    Result<std::string> text = calibrate_delta(printer, touched);
+    Result<std::string> text = what == Calibration::probe  ? calibrate_probe(printer, touched)
+                               : what == Calibration::mesh ? calibrate_mesh(printer, touched)
+                                                           : calibrate_delta(printer, touched);
     if (!text) return text.error();
     result.text = std::move(*text);
     return result;
 }
-
-namespace {
-
-template <class List>
-std::string list_of(const List& values, const char* format) {
-    std::string text = "[";
-    for (std::size_t i = 0; i < values.size(); ++i)
-        text += (i == 0 ? "" : ", ") + formatted(format, static_cast<double>(values[i]));
-    return text + ']';
-}
-
-}  // namespace
 
 std::string calibration_toml(const config::Printer& printer) {
     const auto has = [&](std::string_view key) {

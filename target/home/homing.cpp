@@ -130,6 +130,19 @@ Result<double> home_by_axes(ByAxes& machine, const config::Printer& printer,
     return repeat_mm;
 }
 
+// From where all motors come to a place downwards, with their play taken up.
+std::optional<motion::Point> beyond_play(const config::Printer& printer, const motion::Point& to) {
+    const motion::Kinematics kinematics = moves::kinematics_of(printer);
+    std::array<double, 3> motors_mm = motion::motors_at(kinematics, to);
+    bool any = false;
+    for (std::size_t i = 0; i < motors_mm.size(); ++i) {
+        motors_mm[i] += 2 * printer.backlash_mm[i];
+        any = any || printer.backlash_mm[i] > 0;
+    }
+    if (!any) return std::nullopt;
+    return motion::head_at(kinematics, motors_mm);
+}
+
 }  // namespace
 
 AxisSet homable(const config::Printer& printer) {
@@ -178,8 +191,9 @@ Status travel(Mover& mover, const config::Printer& printer, const motion::Point&
     config::Printer machine = bare_machine(printer);
     machine.start_mm = {from.x, from.y, from.z};
     const double high_mm = std::max(from.z, to.z);
-    const std::array places{from, motion::Point{from.x, from.y, high_mm},
-                            motion::Point{to.x, to.y, high_mm}, to};
+    std::vector<motion::Point> places{from, {from.x, from.y, high_mm}, {to.x, to.y, high_mm}};
+    if (const auto beyond = beyond_play(printer, to)) places.push_back(*beyond);
+    places.push_back(to);
     double fastest_mm_s = 0;
     for (const config::Axis& axis : printer.axes)
         fastest_mm_s = std::hypot(fastest_mm_s, axis.max_speed_mm_s);

@@ -14,7 +14,8 @@
 //  4. Axes without an endstop, and those that were not asked for, are taken to be at start_mm. Where the probe homes z,
 //     x and y are homed too, and before it.
 //  5. Nothing goes downwards or sideways before z was lifted; a delta and a z axis that homes upwards first need no lift.
-//  6. travel() goes upwards first and downwards last.
+//  6. travel() goes upwards first and downwards last. With backlash, all motors arrive downwards, as a print expects it;
+//     the head's coordinates are those of motors that last moved downwards.
 
 #pragma once
 

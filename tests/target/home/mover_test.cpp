@@ -7,7 +7,9 @@
 
 #include <atomic>
 #include <csignal>
+#include <cstdlib>
 #include <mutex>
+#include <new>
 #include <thread>
 
 #include "target/home/scene.h"
@@ -16,6 +18,25 @@ using namespace lyr;
 using namespace lyr::home;
 using namespace lyr::tests;
 using config::Kinematics;
+
+namespace {
+
+thread_local bool counts_allocations = false;
+thread_local std::size_t allocations = 0;
+
+}  // namespace
+
+void* operator new(std::size_t size) {
+    if (counts_allocations) ++allocations;
+    if (void* memory = std::malloc(size)) return memory;
+    throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+    std::free(memory);
+}
 
 namespace {
 
@@ -112,6 +133,25 @@ TEST_CASE("tally 1, 2: the counts at any time are those after the last write bef
     }
     CHECK_FALSE(tally.counts_at(500));
     CHECK(*tally.counts_at(clock.now_ns()) == tally.counts());
+}
+
+TEST_CASE("tally 3, inputs 6: counting steps and collecting edges allocates nothing") {
+    gpio::VirtualClock clock;
+    gpio::MockChip mock(8, clock, {});
+    gpio::MockInputs inputs(1, clock);
+    StepTally tally(mock, clock);
+    std::array<gpio::InputEdge, 4> edges{};
+    counts_allocations = true;
+    std::size_t collected = 0;
+    for (int i = 0; i < 100'000; ++i) {
+        clock.advance_ns(100);
+        const bool ok = tally.write(0xff, i % 2 == 0 ? 0xff : 0).ok();
+        inputs.set(0, i % 2 == 0);
+        collected += ok ? *inputs.collect(edges) : 0;
+    }
+    counts_allocations = false;
+    CHECK(allocations == 0);
+    CHECK(collected == 100'000);
 }
 
 TEST_CASE("mover 1, 2: a contact stops the machine on its path, and what it ran on is counted") {
