@@ -254,7 +254,7 @@ Status work(const Arguments& arguments) {
     // The whole file is checked before the first motion, and then read again.
     if (arguments.lyr_path == "-")
         return usage("a print is read more than once: give a file, not standard input");
-    if (!arguments.simulate && arguments.printer_path.empty())
+    if (!arguments.simulate && !arguments.resumable && arguments.printer_path.empty())
         return usage("to print or tune, --printer FILE must say what the machine is");
     if (!arguments.simulate && (!arguments.trace_path.empty() || arguments.json))
         return usage("--trace and --json need --simulate");
