@@ -333,7 +333,8 @@ Status work(const Arguments& arguments) {
     // The whole file is checked before the first motion, and then read again.
     if (arguments.lyr_path == "-")
         return usage("a print is read more than once: give a file, not standard input");
-    if (!arguments.simulate && !arguments.dry_run && arguments.printer_path.empty())
+    if (!arguments.simulate && !arguments.dry_run && !arguments.resumable &&
+        arguments.printer_path.empty())
         return usage(
             "without --simulate and --dry-run, --printer FILE must say what the machine is");
     if (!arguments.simulate &&

@@ -273,6 +273,36 @@ TEST_CASE("executor 9: half the speed takes twice as long, and the path is the s
     CHECK(control.status().filament_mm > 0);
 }
 
+TEST_CASE("step stream: a higher speed is planned, a lower one after it comes by the pace") {
+    // Moves enough that not all of them are planned at once, on few steps.
+    const auto to_and_fro = [](const Pen& pen) {
+        pen.path();
+        pen.travel(0, 0);
+        for (int i = 1; i <= 3'000; ++i) pen.line(0.5 * (i % 60 < 30 ? i % 60 : 60 - i % 60), 0);
+    };
+    const std::string file = write_print("life_fast", {to_and_fro});
+    const auto with = [&](const std::string& script) {
+        PrintControl control;
+        SimulationJob job{file, parking_printer(), {}, {}, {}};
+        job.no_heat = true;
+        job.control = &control;
+        job.script = *parse_script(script, "script");
+        const Result<SimulationReport> report = simulate(job);
+        REQUIRE_MESSAGE(report.ok(), message_of(report));
+        CHECK(report->within_limits());
+        return std::pair(report->positions, control.status().elapsed_s);
+    };
+    const auto [plain_end, plain_s] = with("");
+    const auto [fast_end, fast_s] = with("5 speed 2");
+    const auto [back_end, back_s] =
+        with("5 speed 2\n" + std::to_string(plain_s * 0.6) + " speed 0.5");
+    CHECK(fast_end == plain_end);
+    CHECK(back_end == plain_end);
+    CHECK(fast_s < 0.9 * plain_s);
+    CHECK(back_s > fast_s * 1.1);
+    CHECK(with("5 speed 2").second == fast_s);
+}
+
 TEST_CASE(
     "heat order 4: a file that pauses goes on when it is told to; without anybody it is refused") {
     const auto pausing = [](format::PauseReason reason) {
