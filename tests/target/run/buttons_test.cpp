@@ -111,7 +111,7 @@ struct Pressing {
 
 Pressing print_and_press(const std::vector<Press>& presses, bool fails = false) {
     const config::Printer printer = buttoned_printer();
-    const std::string file = write_print("buttons", {draw_square, draw_square}, {});
+    const std::string file = write_print("buttons", {draw_square});
     gpio::MonotonicClock clock;
     gpio::MockChip chip(8, clock, {});
     bool is_broken = false;
