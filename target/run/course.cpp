@@ -69,14 +69,14 @@ Result<bool> follow(std::span<const LineEvent> events, Executor& executor, Cours
 void LayerLog::begin(std::span<const LayerBegin> layers, std::int64_t shift_ns) {
     const std::lock_guard lock(mutex_);
     for (const LayerBegin& layer : layers)
-        coming_.push_back({layer.time_ns + shift_ns, layer.layer});
+        coming_.push_back({layer.time_ns + shift_ns, layer.layer, layer.speed_factor});
 }
 
-std::uint32_t LayerLog::at(std::int64_t time_ns) {
+LayerBegin LayerLog::at(std::int64_t time_ns) {
     const std::lock_guard lock(mutex_);
     for (; !coming_.empty() && coming_.front().time_ns <= time_ns; coming_.pop_front())
-        layer_ = coming_.front().layer;
-    return layer_;
+        reached_ = coming_.front();
+    return reached_;
 }
 
 }  // namespace lyr::run

@@ -24,6 +24,7 @@ using Trip = std::vector<LineEvent>;
 
 struct Course {
     WantedPace wanted_pace{1};
+    std::atomic<float> plan_factor{1};  // of speeds, for what is planned from now on
     std::atomic<const Trip*> trip{nullptr};
 
     std::atomic<bool> at_rest{false};
@@ -42,16 +43,16 @@ struct Course {
 Result<bool> follow(std::span<const LineEvent> events, Executor& executor, Course& course,
                     gpio::Clock& clock, const StopRequests& stop_requests);
 
-// Which layer the head is in: the planning thread knows when each begins, long before it does.
+// Which layer the head is in, and how fast it was planned: the planning thread knows long before.
 class LayerLog {
 public:
     void begin(std::span<const LayerBegin> layers, std::int64_t shift_ns);
-    std::uint32_t at(std::int64_t time_ns);
+    LayerBegin at(std::int64_t time_ns);
 
 private:
     std::mutex mutex_;
     std::deque<LayerBegin> coming_;
-    std::uint32_t layer_ = 0;
+    LayerBegin reached_;
 };
 
 }  // namespace lyr::run

@@ -28,6 +28,8 @@ public:
     // Appends the next events; false: these were the last.
     Result<bool> next(std::vector<LineEvent>& events);
 
+    void heed_speed(const std::atomic<float>& factor) { steps_.heed_speed(factor); }
+
     const StepStream& steps() const { return steps_; }
     const PulseSchedule& schedule() const { return schedule_; }
     PulseSchedule& schedule() { return schedule_; }

@@ -51,7 +51,9 @@ Life::Life(const config::Printer& printer, PrintControl& control, Course& course
 void Life::tick(double now_s) {
     if (!begun_s_) begun_s_ = now_s;
     now_s_ = now_s;
-    layer_ = std::max(layer_, layers_.at(course_.time_ns.load(std::memory_order_acquire)));
+    const LayerBegin place = layers_.at(course_.time_ns.load(std::memory_order_acquire));
+    layer_ = std::max(layer_, place.layer);
+    planned_factor_ = static_cast<double>(place.speed_factor);
     note();
     while (const std::optional<Command> command = control_.take()) serve(*command);
     if (const auto pause = desk_.now().pause; pause && phase_ == Phase::printing) {
@@ -83,7 +85,7 @@ void Life::serve(const Command& command) {
         desk_.set_fan(fan->duty);
     } else if (const auto* speed = std::get_if<SetSpeedFactor>(&command)) {
         speed_factor_ = speed->factor;
-        if (phase_ == Phase::printing) course_.wanted_pace.store(pace());
+        course_.plan_factor.store(static_cast<float>(std::max(1.0, speed_factor_)));
     } else {
         rest_for(command);
     }
@@ -94,7 +96,7 @@ void Life::refuse(const Command& command, const std::string& why) {
 }
 
 float Life::pace() const {
-    return static_cast<float>(std::min(1.0, speed_factor_));
+    return static_cast<float>(std::min(1.0, speed_factor_ / planned_factor_));
 }
 
 // Pause, ChangeFilament or Cancel.
@@ -149,6 +151,8 @@ void Life::set_temperature(const SetTemperature& set) {
 void Life::advance() {
     const bool rests = course_.at_rest.load(std::memory_order_acquire);
     const bool travels = course_.trip.load(std::memory_order_acquire) != nullptr;
+    if (phase_ == Phase::printing && course_.wanted_pace.load() != pace())
+        course_.wanted_pace.store(pace());
     if (phase_ == Phase::braking && rests) return park();
     if (phase_ == Phase::parking && !travels) return parked();
     if (phase_ == Phase::resting) return rest();

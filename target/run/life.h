@@ -13,7 +13,7 @@
 //  4. A cancel takes all heat away, parks too, and ends by a request to stop; an emergency stop does so at once, and calls
 //     `cut`.
 //  5. What cannot be done as things are is refused, and status().message says why.
-//  6. Commands take effect within the next tick.
+//  6. Commands take effect within the next tick; a speed above that of the file does with moves that are not planned yet.
 //  7. With a journal, each layer is noted there when the head begins it, and where the head is parked; a journal that
 //     cannot be written is told, and is no reason to stop.
 //  8. A print that resumes after it was cut off begins with heat, then the head is lifted, unless that was done.
@@ -116,8 +116,8 @@ private:
     Command reason_ = Pause{};       // of the rest
     std::optional<double> begun_s_;  // the first tick
     double now_s_ = 0, left_since_s_ = 0, rest_since_s_ = 0, paused_s_ = 0;
-    double speed_factor_ = 1;
-    Trip trip_;  // while the motion makes it
+    double speed_factor_ = 1, planned_factor_ = 1;  // wanted, and of the path where the head is
+    Trip trip_;                                     // while the motion makes it
     motion::Point left_at_, parked_at_;
     double drawn_back_mm_ = 0;
     bool is_unloaded_ = false;

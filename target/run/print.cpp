@@ -350,6 +350,7 @@ Result<PrintReport> run(const PrintJob& job, const Prepared& prepared, gpio::Gpi
         EventStream::open(job.file, running.printer, inspection.filament_diameter_mm,
                           &shared.orders, job.resumption ? job.resumption->first_layer : 0);
     if (!stream) return stream.error();
+    stream->heed_speed(shared.course.plan_factor);
     const StopSignals signals;
     PrintReport report;
     report.warnings = prepared.notes;

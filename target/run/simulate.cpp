@@ -81,6 +81,7 @@ public:
             heat_.observe(
                 [this](double time_s) { job_.heat_watch(time_s, heat_.any_heater_on()); });
         if (job.resumption) life_.begin_with(*job.resumption, false);
+        stream_.heed_speed(course_.plan_factor);
         if (is_lived()) clock_.on_tick = [this](double time_s) { live(time_s); };
     }
 

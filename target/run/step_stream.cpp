@@ -49,8 +49,7 @@ Result<bool> StepStream::next(std::vector<Step>& steps) {
             }
             if (const Status planned = plan(); !planned) return planned.error();
         }
-        if (move.tag != layer_) begun_.push_back({move.start_ns, move.tag});
-        layer_ = move.tag;
+        note_begin(move);
         if (!waiting_.empty() && waiting_.front().before_move <= popped_) {
             // What lags behind the plan comes first.
             generator_.rest_until(move.start_ns);
@@ -102,7 +101,21 @@ Status StepStream::plan() {
     return Done{};
 }
 
-Status StepStream::plan(const motion::Move& move) {
+void StepStream::note_begin(const motion::PlannedMove& move) {
+    float factor = factor_;
+    for (; !factors_.empty() && factors_.front().before_move <= popped_; factors_.pop_front())
+        factor = factors_.front().factor;
+    if (move.tag != layer_ || factor != factor_)
+        begun_.push_back({move.start_ns, move.tag, factor});
+    layer_ = move.tag;
+    factor_ = factor;
+}
+
+Status StepStream::plan(motion::Move move) {
+    const float factor = speed_factor_ ? speed_factor_->load(std::memory_order_relaxed) : 1;
+    if (factor != planned_factor_) factors_.push_back({pushed_, factor});
+    planned_factor_ = factor;
+    move.speed_mm_s *= static_cast<double>(factor);
     if (const Status pushed = planner_.push(move); !pushed) {
         Diagnostic error = pushed.error();
         error.where.file = path_;

@@ -12,6 +12,7 @@
 
 #pragma once
 
+#include <atomic>
 #include <deque>
 #include <string>
 #include <vector>
@@ -23,10 +24,12 @@
 
 namespace lyr::run {
 
-// From this time on, of the steps or of the events, the head is in this layer, from 1.
+// From this time on, of the steps or of the events, the head is in this layer, from 1, and goes at so many times the file's
+// speeds.
 struct LayerBegin {
     std::int64_t time_ns = 0;
     std::uint32_t layer = 0;
+    float speed_factor = 1;
 };
 
 class StepStream {
@@ -43,7 +46,9 @@ public:
     std::int64_t time_ns() const { return planner_.time_ns() + generator_.tail_ns(); }
     // Of the move begun last, from 1; 0 before the first.
     std::uint32_t layer() const { return layer_; }
-    // Layers that the batch has begun.
+    // Multiplies the speeds of moves that are not planned yet.
+    void heed_speed(const std::atomic<float>& factor) { speed_factor_ = &factor; }
+    // Layers that the batch has begun, and changes of that factor.
     const std::vector<LayerBegin>& begun() const { return begun_; }
 
 private:
@@ -53,11 +58,18 @@ private:
         HeatOrder order;
     };
 
+    // A factor and the number of the move from which it holds.
+    struct Factor {
+        std::uint64_t before_move;
+        float factor;
+    };
+
     StepStream(std::string path, Interpreter interpreter, motion::Planner planner,
                MotorSteps generator, OrderQueue* orders);
 
     Status plan();
-    Status plan(const motion::Move& move);
+    Status plan(motion::Move move);
+    void note_begin(const motion::PlannedMove& move);
     Status plan(const HeatOrder& asked);
     // Appends the next steps of what is known, at most so many; how many events they were.
     std::size_t take(std::size_t most, std::vector<Step>& steps);
@@ -77,6 +89,9 @@ private:
     std::vector<motion::PlannedMove> moves_;
     std::vector<motion::StepEvent> events_;
     std::uint32_t layer_ = 0;
+    float factor_ = 1, planned_factor_ = 1;  // of the move begun last, and of that planned last
+    const std::atomic<float>* speed_factor_ = nullptr;
+    std::deque<Factor> factors_;
     std::vector<LayerBegin> begun_;
     std::int64_t last_ns_ = 0;  // of the steps so far
 };
