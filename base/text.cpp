@@ -43,7 +43,9 @@ Character first_character(std::string_view text) {
             continued = continued && (byte(k) & 0xc0) == 0x80;
             code = code << 6 | (byte(k) & 0x3fu);
         }
-        if (continued && code >= forms[i].least) return {bytes, !is_control(code)};
+        // Halves of UTF-16, and what is beyond the last character, are no UTF-8 either.
+        const bool is_character = code < 0xd800 || (code > 0xdfff && code <= 0x10ffff);
+        if (continued && code >= forms[i].least && is_character) return {bytes, !is_control(code)};
     }
     return {};
 }

@@ -34,7 +34,10 @@ TEST_CASE("text: escaped leaves what can be shown as it is") {
     CHECK(escaped("\xc2\x9b") == "\\xc2\\x9b");           // CSI as a character
     CHECK(escaped("\xe9t\xe9") == "\\xe9t\\xe9");         // Latin-1
     CHECK(escaped("\xe0\x82\x9b") == "\\xe0\\x82\\x9b");  // longer than it need be
-    CHECK(escaped("\xe2\x82") == "\\xe2\\x82");           // cut short
+    CHECK(escaped("\xed\xa0\x80") == "\\xed\\xa0\\x80");  // half of a pair of UTF-16
+    CHECK(escaped("\xf4\x90\x80\x80") == "\\xf4\\x90\\x80\\x80");
+    CHECK(escaped("\xf4\x8f\xbf\xbd") == "\xf4\x8f\xbf\xbd");
+    CHECK(escaped("\xe2\x82") == "\\xe2\\x82");  // cut short
 }
 
 TEST_CASE("text: in_quotes is bounded and never cuts a character") {

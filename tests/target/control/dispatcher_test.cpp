@@ -42,11 +42,11 @@ struct Scene {
 
 TEST_CASE("dispatcher: greeting and status are JSON, whatever names hold") {
     Scene scene;
-    scene.printer.name = "a\x1b[31m\xff\"";
+    scene.printer.name = "a\x1b[31m\xff\"\xed\xa0\x80";
     const json greeting = json::parse(scene.dispatcher.greeting());
     CHECK(greeting["greeting"] == "lyrrun");
     CHECK(greeting["protocol"] == protocol_version);
-    CHECK(greeting["printer"] == "a\\x1b[31m\\xff\"");
+    CHECK(greeting["printer"] == "a\\x1b[31m\\xff\"\\xed\\xa0\\x80");
     const json answered = scene.answer(R"({"id":4,"command":"status"})");
     CHECK(answered["id"] == 4);
     const json& status = answered["status"];

@@ -176,6 +176,7 @@ TEST_CASE("print 7: a journal that cannot be written is a warning, and the print
     gpio::MockChip again(line_count, clock, {});
     CHECK(print(job, again, clock).ok());
     CHECK(control.status().message.find("cannot write the journal") != std::string::npos);
+    CHECK(std::filesystem::exists("/dev/full"));  // which is not its own to remove
 }
 
 TEST_CASE("print 6: pauses, in a real print's threads, leave the path as it is") {
