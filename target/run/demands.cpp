@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdio>
 
+#include "base/text.h"
 #include "target/run/heat_order.h"
 
 namespace lyr::run {
@@ -72,11 +73,26 @@ Status check_heat(const Demands& demands, const config::Printer& printer) {
     return cold;
 }
 
+// Axes that the board is too late for at their full speed.
+void note_held_axes(const config::Printer& printer, Diagnostics& notes) {
+    for (std::size_t axis = 0; axis < config::axis_count; ++axis) {
+        const double full_mm_s = printer.axes[axis].max_speed_mm_s;
+        const double held_mm_s = config::held_speed_mm_s(printer, axis);
+        if (held_mm_s < full_mm_s)
+            notes.push_back(note(
+                formatted("axis.%s is planned at %.1f mm/s at the most, not %g: by [timing] the "
+                          "board holds %.0f steps a second of each motor",
+                          std::string(config::axis_names[axis]).c_str(), held_mm_s, full_mm_s,
+                          config::held_steps_per_s(printer))));
+    }
+}
+
 }  // namespace
 
 Status check_demands(const Inspection& inspection, const config::Printer& printer, bool no_heat,
                      Diagnostics& notes, bool can_resume) {
     const Demands& demands = inspection.demands;
+    note_held_axes(printer, notes);
     if (no_heat && !demands.hottest.empty())
         notes.push_back(note("not heated: " + heat_text(demands)));
     const bool has_fans = !no_heat && printer.part_fan &&

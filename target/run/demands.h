@@ -5,7 +5,8 @@
 //     temperature within headroom_c of the end of its range_c or beyond, filament that is pushed while the tool has
 //     not surely reached min_extrude_c.
 //  2. Pauses are an error of status unsupported, unless somebody can tell the print to go on.
-//  3. What is passed over is noted: heat, if `no_heat`, and fans that the printer does not have.
+//  3. What is passed over is noted: heat, if `no_heat`, and fans that the printer does not have; and axes that are
+//     planned slower than they could be, since the board is late.
 
 #pragma once
 

@@ -37,15 +37,9 @@ void keep_stacks_small() {
 }
 
 void lock_memory(Diagnostics& warnings) {
-    // A locked stack is in memory as a whole, and the usual one has 8 MB.
-    constexpr std::size_t stack_bytes = std::size_t{512} << 10;
-    pthread_attr_t attributes;
-    if (::pthread_getattr_default_np(&attributes) == 0) {
-        ::pthread_attr_setstacksize(&attributes, stack_bytes);
-        ::pthread_setattr_default_np(&attributes);
-        ::pthread_attr_destroy(&attributes);
-    }
-    if (::mlockall(MCL_CURRENT | MCL_FUTURE) != 0)
+    // Each page once it is touched: all of the libraries' and of every thread's 8 MB of stack would be several times what
+    // a print needs. What the real-time thread touches, it has touched before the head moves.
+    if (::mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) != 0)
         warnings.push_back(
             refused("locking memory", errno, "grant CAP_IPC_LOCK or raise `ulimit -l`"));
 }

@@ -13,7 +13,7 @@ namespace lyr::run {
 void keep_stacks_small();
 
 // Keeps the memory of the whole process, present and future, in place: a page fault would cost
-// milliseconds. Threads that start later have small stacks, since these are locked too.
+// milliseconds.
 void lock_memory(Diagnostics& warnings);
 
 // Puts the calling thread before all ordinary ones (SCHED_FIFO).

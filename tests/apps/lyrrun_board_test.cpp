@@ -1,0 +1,93 @@
+// lyrrun's looks at the board, and what a print takes of it, from the outside.
+
+#include "apps/program.h"
+#include "target/run/print_files.h"
+
+using namespace lyr;
+using namespace lyr::tests;
+
+namespace {
+
+Folder with_printer() {
+    Folder folder("board");
+    folder.copy("printers/cartesian.toml", "p.toml");
+    return folder;
+}
+
+}  // namespace
+
+TEST_CASE("lyrrun --check: a board without the printer's lines fails, in words and in JSON") {
+    const Folder folder = with_printer();
+    const Ended words = folder.run(
+        "sed -i s/pinctrl-bcm2835/no-such-chip/ p.toml\n"
+        "lyrrun --check --printer p.toml");
+    CHECK(words.status == 7);
+    CHECK(words.out.find("error    axis.x.step: cannot open GPIO chip no-such-chip") !=
+          std::string::npos);
+    CHECK(words.out.find(" errors, ") != std::string::npos);
+    CHECK(lines_in(words.err) == 1);
+    const Ended json = folder.run("lyrrun --check --json --printer p.toml");
+    CHECK(json.status == 7);
+    CHECK(json.out.starts_with(R"({"printer":"cartesian on a Raspberry Pi","errors":)"));
+    CHECK(lines_in(json.out) == 1);
+}
+
+TEST_CASE("lyrrun --measure-latency: what it prints is a section that the printer's file takes") {
+    const Folder folder = with_printer();
+    const Ended measured = folder.run(
+        "lyrrun --measure-latency --seconds 0.3 --printer p.toml >> p.toml &&\n"
+        "lyrrun --measure-latency --seconds 0.1 --printer p.toml");
+    CHECK(measured.status == 0);
+    CHECK(measured.out.find("\n[timing]\nlate_us = ") != std::string::npos);
+    CHECK(text_of(folder / "p.toml").find("# Timing of the board of \"cartesian") !=
+          std::string::npos);
+}
+
+TEST_CASE("lyrrun: a board that is late is planned slower") {
+    const Folder folder("late");
+    const std::string file = write_print("late", std::vector<Drawing>(3, draw_square));
+    const auto simulated_with = [&](const std::string& timing) {
+        folder.write("p.toml", text_of(fs::path(LYR_FIXTURES) / "printers/generic.toml") + timing);
+        const Ended ended =
+            folder.run("lyrrun '" + file + "' --simulate --no-heat --json --printer p.toml");
+        CHECK(ended.status == 0);
+        CHECK((ended.out.find("axis.x is planned at 12.5 mm/s at the most, not 300") !=
+               std::string::npos) == !timing.empty());
+        const std::string key = "\"print_time_s\":";
+        const std::size_t at = ended.out.find(key);
+        REQUIRE(at != std::string::npos);
+        return std::stod(ended.out.substr(at + key.size()));
+    };
+    // 1,000 steps a second are 12.5 mm/s.
+    CHECK(simulated_with("[timing]\nlate_us = 968\n") > 1.5 * simulated_with(""));
+}
+
+TEST_CASE("lyrrun --check, --measure-latency: what makes no sense together is refused") {
+    const Folder folder = with_printer();
+    for (const char* options :
+         {"--check --measure-latency", "--check --lines", "--lines", "--check --simulate",
+          "--measure-latency --json", "--check part.lyr", "--check --tune tool=200",
+          "--measure-latency --home", "--measure-latency --seconds 0"}) {
+        CAPTURE(options);
+        const Ended ended = folder.run(std::string("lyrrun --printer p.toml ") + options);
+        CHECK(ended.status == 2);
+        CHECK(lines_in(ended.err) == 1);
+    }
+    CHECK(folder.run("lyrrun --check").status == 2);
+}
+
+TEST_CASE("lyrrun: a print takes at most 8 MB of memory, however long it is") {
+    const Folder folder("memory");
+    const std::string file = write_print("memory", std::vector<Drawing>(400, draw_square));
+    const Ended ended = folder.run(
+        "lyrrun '" + file +
+        "' --simulate >/dev/null & p=$!\n"
+        "while grep VmHWM /proc/$p/status >now 2>/dev/null && [ -s now ]; do mv now most; done\n"
+        "wait $p && cat most");
+    CHECK(ended.status == 0);
+    const std::size_t number = ended.out.find_first_of("0123456789");
+    REQUIRE(number != std::string::npos);
+    const int most_kb = std::stoi(ended.out.substr(number));
+    CHECK(most_kb > 1'000);
+    CHECK(most_kb < 8'000);
+}
