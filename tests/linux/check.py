@@ -220,8 +220,16 @@ def check_torn(case, waves):
     case.check_says("a broken wire")
 
 
+def check_watched(case, waves):
+    case.check_status(137)
+    ended, died = case.text("ended"), case.text("died")
+    case.check("the watchdog is stopped by a print that ends in order", "did not stop" not in ended, ended.strip())
+    case.check("and strikes after one that does not", "softdog: Triggered" in died, died.strip()[-100:])
+
+
 CHECKS = {"unit": check_unit, "homed": check_homed, "cold": check_cold, "terminated": check_terminated,
-          "killed": check_killed, "silent": check_silent, "hot": check_hot, "torn": check_torn}
+          "killed": check_killed, "silent": check_silent, "hot": check_hot, "torn": check_torn,
+          "watched": check_watched}
 
 
 def main():
