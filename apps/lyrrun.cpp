@@ -47,28 +47,29 @@ constexpr Program program{
     "  lyrrun part.lyr --simulate --printer printer.toml  on your own\n"
     "  lyrrun part.lyr --simulate --trace part.vcd        every edge of the motors' lines, for "
     "GTKWave\n"
-    "  lyrrun part.lyr --printer printer.toml             print\n"
-    "  lyrrun part.lyr --printer printer.toml --no-heat   move the machine, heaters off\n"
-    "  lyrrun part.lyr --dry-run                          try that without a board, in real time\n"
-    "  lyrrun --printer printer.toml --tune tool=210      find a heater's kp, ki and kd\n"
     "  lyrrun part.lyr --simulate --faults faults.txt     see what the guards do about faults\n"
-    "  lyrrun --printer printer.toml --check              what this board lacks for it\n"
+    "  lyrrun part.lyr --simulate --script script.txt     pause, go on, cancel at times of your "
+    "own\n"
+    "  lyrrun part.lyr --dry-run                          in real time, for lyrctl, without a "
+    "board\n"
+    "  lyrrun --printer printer.toml --check              what this board lacks for the printer\n"
     "  lyrrun --printer printer.toml --measure-latency    how fast it may step\n"
     "  lyrrun --printer printer.toml --home               find where the head is\n"
     "  lyrrun --printer printer.toml --jog x=10,z=5       and move it by so much\n"
     "  lyrrun --printer printer.toml --calibrate mesh     measure how high the bed is where\n"
-    "  lyrrun part.lyr --simulate --script script.txt     pause, go on, cancel: "
-    "docs/print-life.md\n"
+    "  lyrrun --printer printer.toml --tune tool=210      find a heater's kp, ki and kd\n"
+    "  lyrrun part.lyr --printer printer.toml             print\n"
+    "  lyrrun part.lyr --printer printer.toml --no-heat   move the machine, heaters off\n"
     "  lyrrun part.lyr --printer printer.toml --resumable what a loss of power left\n"
     "  lyrrun part.lyr --printer printer.toml --resume    go on at the layer that was cut off\n"
     "\n"
     "A print takes the whole path from the file and starts with the head at start_mm of the\n"
-    "printer, which a printer with endstops finds by itself. Ctrl-C brings the head to rest on its "
-    "path and releases all lines; a second\n"
-    "Ctrl-C does so at once. Whatever ends it, all heaters go off. docs/configuration.md explains\n"
-    "printer.toml, docs/algorithms/heat.md the guards and the file of faults.\n"
-    "lyrctl shows and controls a print (docs/control-protocol.md).\n"
-    "What is reported goes to standard error where the trace goes to standard output.\n"
+    "printer, which a printer with endstops finds by itself. Ctrl-C brings the head to rest on\n"
+    "its path and releases all lines; a second Ctrl-C does so at once. Whatever ends it, all\n"
+    "heaters go off. lyrctl shows and controls a print. docs/bring-up.md leads to the first one,\n"
+    "docs/configuration.md explains printer.toml, docs/algorithms/heat.md the guards and the file\n"
+    "of faults, docs/print-life.md pauses, scripts and resuming, docs/control-protocol.md the\n"
+    "socket. What is reported goes to standard error where the trace goes to standard output.\n"
     "Exit status: 0 done, 2 options, 3 input, 4 not supported yet, 6 output, 7 the machine cannot\n"
     "or did not do it, 8 stopped on request.\n"};
 
@@ -273,15 +274,21 @@ Status print(const Arguments& arguments, const config::Printer& printer) {
                 printer.name + "\"\n" + run::text_of(*report));
 }
 
+// A print, or what is said about one.
+bool asks_of_a_print(const Arguments& arguments) {
+    return !arguments.lyr_path.empty() || !arguments.trace_path.empty() ||
+           !arguments.script_path.empty() || !arguments.socket.empty() || arguments.dry_run ||
+           arguments.no_heat || arguments.resume || arguments.resumable;
+}
+
 Status check_board_together(const Arguments& arguments) {
     const BoardArguments& board = arguments.board;
     if (board.check == board.measure)
         return usage(board.check ? "--check goes without --measure-latency"
                                  : "--lines goes with --measure-latency");
     if (board.lines && board.check) return usage("--lines goes with --measure-latency");
-    if (!arguments.lyr_path.empty() || arguments.tune || arguments.place.given() ||
-        arguments.simulate || arguments.no_heat || !arguments.trace_path.empty() ||
-        !arguments.faults_path.empty() || (arguments.json && !board.check))
+    if (asks_of_a_print(arguments) || arguments.tune || arguments.place.given() ||
+        arguments.simulate || !arguments.faults_path.empty() || (arguments.json && !board.check))
         return usage(board.check ? "--check goes with --printer and --json alone"
                                  : "--measure-latency goes with --printer, --seconds and --lines "
                                    "alone");
@@ -295,26 +302,20 @@ Status check_together(const Arguments& arguments) {
         return usage("--tune goes without --home, --jog and --calibrate");
     if (arguments.place.calibrate && (arguments.place.home || arguments.place.jog_mm))
         return usage("--calibrate homes by itself: it goes without --home and --jog");
-    if (arguments.place.given()) {
-        if (!arguments.lyr_path.empty() || !arguments.trace_path.empty() || arguments.json ||
-            arguments.no_heat)
+    if (arguments.place.given() || arguments.tune) {
+        if (asks_of_a_print(arguments) || arguments.json)
             return usage(
-                "--home, --jog and --calibrate go without a print, --trace, --json and --no-heat");
-    } else if (arguments.tune) {
-        if (!arguments.lyr_path.empty() || !arguments.trace_path.empty() || arguments.json ||
-            arguments.no_heat || !arguments.script_path.empty() || arguments.resume ||
-            arguments.resumable)
-            return usage(
-                "--tune goes without a print, --trace, --json, --no-heat, --script and --resume");
+                "--tune, --home, --jog and --calibrate go without a print and what is said of one: "
+                "with --printer, --simulate and --faults alone");
     } else if (arguments.lyr_path.empty()) {
         return usage(
-            "print is required, the .lyr file that stepc wrote, or --tune, --home, --jog or "
-            "--calibrate");
+            "print is required, the .lyr file that stepc wrote, or --check, --measure-latency, "
+            "--tune, --home, --jog or --calibrate");
     }
     if (!arguments.simulate && !arguments.faults_path.empty())
         return usage("--faults needs --simulate");
-    if ((arguments.dry_run || !arguments.socket.empty()) && (arguments.simulate || arguments.tune))
-        return usage("--dry-run and --socket go with a print, not with --simulate or --tune");
+    if ((arguments.dry_run || !arguments.socket.empty()) && arguments.simulate)
+        return usage("--dry-run and --socket go with a print, not with --simulate");
     if (!arguments.simulate && !arguments.script_path.empty())
         return usage("--script needs --simulate");
     if (arguments.resume && arguments.resumable)
