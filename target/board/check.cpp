@@ -215,10 +215,22 @@ void Check::timing() {
 }
 
 void Check::watchdog() {
-    if (::access((board_.root + "/dev/watchdog").c_str(), F_OK) == 0)
-        good("watchdog", "/dev/watchdog is there");
+    const std::string& device = printer_.watchdog.device;
+    const auto may = [this](const std::string& path, int what) {
+        return ::access((board_.root + path).c_str(), what) == 0;
+    };
+    if (device.empty())
+        warn("watchdog.device",
+             std::string("is missing: if the kernel hangs, lines keep their level") +
+                 (may("/dev/watchdog", F_OK) ? "; this board has /dev/watchdog" : ""));
+    else if (!may(device, F_OK))
+        fail("watchdog.device", device + " is not there: load the driver of the board's watchdog");
+    else if (!may(device, W_OK))
+        fail("watchdog.device", device +
+                                    " may not be written: give it to the group of this user "
+                                    "(udev)");
     else
-        warn("watchdog", "/dev/watchdog is not there: if the kernel hangs, lines keep their level");
+        good("watchdog.device", device + " is there");
 }
 
 Diagnostics try_privileges() {

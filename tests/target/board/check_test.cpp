@@ -57,6 +57,7 @@ config::Printer good_printer() {
     printer.heaters[config::heater_tool]->sensor.file = "/sys/adc";
     printer.part_fan->pwm = "/sys/pwm";
     printer.timing.late_ns = 20'000;
+    printer.watchdog.device = "/dev/watchdog";
     return printer;
 }
 
@@ -164,9 +165,15 @@ TEST_CASE("check 1: what makes a board late, or leaves it unwatched, is a warnin
     CHECK(says(wrong("clock"), Severity::warning, "hpet is slow"));
     folder.put("sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", "ondemand\n");
     CHECK(says(wrong("processor"), Severity::warning, "performance"));
-    folder.remove("dev/watchdog");
-    CHECK(says(wrong("watchdog"), Severity::warning, "hangs"));
     config::Printer printer = good_printer();
+    printer.watchdog.device.clear();
+    const auto unguarded = [&] {
+        return problem(check(printer, good_board(folder)), "watchdog.device");
+    };
+    CHECK(says(unguarded(), Severity::warning, "this board has /dev/watchdog"));
+    folder.remove("dev/watchdog");
+    CHECK(says(unguarded(), Severity::warning, "hangs"));
+    CHECK(says(wrong("watchdog.device"), Severity::error, "/dev/watchdog is not there"));
     printer.timing.late_ns.reset();
     Board board = good_board(folder);
     board.privileges = [] {
