@@ -245,7 +245,18 @@ Status simulate(const Arguments& arguments, const config::Printer& printer) {
                       {.file = arguments.lyr_path}};
 }
 
+// A print that begins anew forgets what was cut off.
+void tell_forgotten(const Arguments& arguments, const config::Printer& printer) {
+    const Result<run::Resumption> found = run::find_resumption(printer, arguments.lyr_path);
+    if (arguments.resume || !found) return;
+    std::string text = run::text_of(*found, arguments.lyr_path);
+    text.pop_back();
+    show(program,
+         {{Severity::note, ExitStatus::ok, text + "; it begins anew, without --resume", {}}});
+}
+
 Status print(const Arguments& arguments, const config::Printer& printer) {
+    tell_forgotten(arguments, printer);
     Result<std::optional<run::Resumption>> resumption = resumption_of(arguments, printer);
     if (!resumption) return resumption.error();
     ProgressLine line;

@@ -1,13 +1,15 @@
-// What the real-time thread runs must not allocate: executor.h's contract 8 and event_ring.h's 2. Allocations
-// are counted in the thread that asks for it only.
+// What the real-time thread runs must not allocate: the contracts of executor.h (8), course.h (3) and event_ring.h (2).
+// Allocations are counted in the thread that asks for it only.
 
 #include <doctest/doctest.h>
 
 #include <cstdlib>
+#include <functional>
 #include <new>
 #include <thread>
 
 #include "target/gpio/mock_chip.h"
+#include "target/run/course.h"
 #include "target/run/event_ring.h"
 #include "target/run/executor.h"
 #include "target/run/print.h"
@@ -134,6 +136,64 @@ TEST_CASE(
     CHECK(chip.writes == report->writes);
     CHECK(chip.writes > 1'000);
     CHECK(chip.allocated == 0);
+}
+
+TEST_CASE("course 3: resting, trips and going on allocate nothing on the thread that does them") {
+    const std::vector<LineEvent> events = pulses(8'000);
+    Trip trip;
+    PulseSchedule schedule({}, 0);
+    schedule.begin(0, trip);
+    const Step there{1'000'000, 2, true}, back{2'000'000, 2, false};
+    schedule.append(std::span(&there, 1), trip);
+    schedule.append(std::span(&back, 1), trip);
+    schedule.finish_as_begun(trip);
+    gpio::VirtualClock clock;
+    StopRequests stop{0};
+    Course course;
+    std::uint64_t edges = 0;
+    bool has_rested = false;
+    gpio::MockChip chip(8, clock, [&](const gpio::LineWrite&) {
+        if (++edges == 4'000) course.wanted_pace = 0;
+    });
+    // Whoever lives the print's life, asked from the clock.
+    class Living final : public gpio::Clock {
+    public:
+        Living(gpio::VirtualClock& inner, const std::function<void()>& live)
+            : inner_(inner), live_(live) {}
+        std::int64_t now_ns() const override { return inner_.now_ns(); }
+        std::int64_t wait_until_ns(std::int64_t time_ns) override {
+            live_();
+            return inner_.wait_until_ns(time_ns);
+        }
+
+    private:
+        gpio::VirtualClock& inner_;
+        const std::function<void()>& live_;
+    };
+    const std::function<void()> live = [&] {
+        if (!course.at_rest || course.trip.load()) return;
+        if (has_rested) course.wanted_pace = 1;
+        if (!has_rested) {
+            // Its direction line is where the path left it.
+            for (LineEvent& event : trip) event.levels |= course.levels & direction_bit(0);
+            course.trip = &trip;
+        }
+        has_rested = true;
+    };
+    Living living(clock, live);
+    Executor executor(chip, living, {2'000, 5'000'000, 60'000'000}, stop, nullptr,
+                      &course.wanted_pace);
+    allocations = 0;
+    counts = true;
+    const Result<bool> done = follow(events, executor, course, living, stop);
+    counts = false;
+    CHECK(allocations == 0);
+    REQUIRE(done.ok());
+    CHECK(*done);
+    CHECK(has_rested);
+    CHECK(executor.trip_steps() == StepPositions{});
+    CHECK(executor.positions() == course.steps_on_path());
+    CHECK(executor.writes() == events.size() + trip.size());
 }
 
 }  // namespace lyr::run
