@@ -41,7 +41,8 @@ std::optional<std::uint64_t> Reader::Implementation::find_layer(std::uint32_t in
     const auto pick = [&](std::span<const std::byte> piece) {
         for (std::uint64_t i = first; i < first + index_entry_bytes; ++i)
             if (i >= passed && i < passed + piece.size())
-                offset |= static_cast<std::uint64_t>(piece[i - passed]) << (8 * (i - first));
+                offset |= static_cast<std::uint64_t>(piece[static_cast<std::size_t>(i - passed)])
+                          << (8 * (i - first));
         passed += piece.size();
     };
     if (!blocks_.stream(head, pick)) {

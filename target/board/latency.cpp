@@ -33,7 +33,7 @@ constexpr std::int64_t run_ns = 2'000'000'000;
 // What a print's other threads and a board's other programs do: more than the caches hold.
 void work(const std::atomic<bool>& finished) {
     std::vector<std::uint64_t> memory(std::size_t{1} << 18);
-    for (std::uint64_t i = 0; !finished.load(std::memory_order_relaxed); ++i)
+    for (std::size_t i = 0; !finished.load(std::memory_order_relaxed); ++i)
         memory[(i * 7919) % memory.size()] += i;
 }
 

@@ -10,7 +10,7 @@ constexpr double farthest_pressed_mm = 1000;
 
 void MoveWindow::push(const PlannedMove& planned) {
     if (size_ == ring_.size()) grow();
-    ChannelMove& move = ring_[end() & (ring_.size() - 1)];
+    ChannelMove& move = ring_[place(end())];
     ++size_;
     rests_until_ns_ = std::numeric_limits<std::int64_t>::min();
     const Path& path = planned.path;
@@ -49,7 +49,7 @@ void MoveWindow::drop_before(std::uint64_t number) {
     if (pressed_mm_ < farthest_pressed_mm) return;
     const double excess_mm = at(first_).from[pressed_channel];
     for (std::uint64_t i = first_; i < end(); ++i) {
-        ChannelMove& move = ring_[i & (ring_.size() - 1)];
+        ChannelMove& move = ring_[place(i)];
         move.from[pressed_channel] -= excess_mm;
         move.to[pressed_channel] -= excess_mm;
     }
@@ -58,7 +58,8 @@ void MoveWindow::drop_before(std::uint64_t number) {
 
 void MoveWindow::grow() {
     std::vector<ChannelMove> larger(2 * ring_.size());
-    for (std::uint64_t i = first_; i < end(); ++i) larger[i & (larger.size() - 1)] = at(i);
+    for (std::uint64_t i = first_; i < end(); ++i)
+        larger[static_cast<std::size_t>(i) & (larger.size() - 1)] = at(i);
     ring_.swap(larger);
 }
 

@@ -41,10 +41,13 @@ public:
 
     std::uint64_t first() const { return first_; }
     std::uint64_t end() const { return first_ + size_; }
-    const ChannelMove& at(std::uint64_t number) const { return ring_[number & (ring_.size() - 1)]; }
+    const ChannelMove& at(std::uint64_t number) const { return ring_[place(number)]; }
 
 private:
     void grow();
+    std::size_t place(std::uint64_t number) const {
+        return static_cast<std::size_t>(number) & (ring_.size() - 1);
+    }
 
     std::vector<ChannelMove> ring_;  // a power of two; move n lies at n modulo the size
     std::uint64_t first_ = 0;
