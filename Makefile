@@ -9,7 +9,7 @@
 # make test-klipper KLIPPER=checkout   both show pieces as G-code through Klipper's own batch mode (needs: tools/setup
 #                 --klipper); docs/exports.md
 # make board      only what a printer's board needs (lyrrun, lyrctl, lyrview), into build-board/
-# make cross      the same for 64-bit and 32-bit ARM boards with Debian 12 or later, into build-arm64/ and build-armhf/
+# make cross      the same (lyrctl without its page) for 64-bit and 32-bit ARM boards with Debian 12 or later, into build-arm64/ and build-armhf/
 # make test-cross the tests of what runs on a board, built for both and run by qemu-user
 # make bench      speed beside OpenCASCADE's and PrusaSlicer's, into build-bench/ (needs: tools/setup --bench);
 #                 LYR_BENCH_FILES=folder of STEP files to read
@@ -98,7 +98,7 @@ cross-%:
 	@tools/setup --cross $* build-$*/sysroot
 	cmake -S . -B build-$* -DCMAKE_BUILD_TYPE=Release -DLYR_KERNEL=OFF -DLYR_PRECOMPILE=OFF -DLYR_ARCH=$* \
 	  -DLYR_SYSROOT=$(CURDIR)/build-$*/sysroot -DCMAKE_TOOLCHAIN_FILE=$(CURDIR)/cmake/cross.cmake
-	cmake --build build-$* -j $(JOBS) --target lyrrun lyrview
+	cmake --build build-$* -j $(JOBS) --target lyrrun lyrctl lyrview
 
 test-cross: $(CROSS:%=test-cross-%)
 
