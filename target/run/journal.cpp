@@ -11,6 +11,7 @@
 #include "target/run/journal.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -164,14 +165,16 @@ Status Journal::write(const JournalEntry& entry) {
 }
 
 void Journal::remove() {
-    // A device that stands in for it is not ours.
-    if (is_regular_file(path_)) (void)::unlink(path_.c_str());
+    // What the user named may be no file of ours.
+    struct stat kind {};
+    if (::fstat(descriptor_, &kind) == 0 && S_ISREG(kind.st_mode)) (void)::unlink(path_.c_str());
 }
 
 JournalWriter::JournalWriter(Journal journal)
     : journal_(std::move(journal)), thread_([this] { work(); }) {}
 
-JournalWriter::~JournalWriter() {
+void JournalWriter::finish() {
+    if (!thread_.joinable()) return;
     {
         const std::lock_guard lock(mutex_);
         ends_ = true;

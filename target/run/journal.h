@@ -52,7 +52,7 @@ public:
     ~Journal();
 
     Status write(const JournalEntry& entry);
-    // The print is over, and nothing of it is left to resume.
+    // The print is over, and nothing of it is left to resume; a device is left alone.
     void remove();
 
 private:
@@ -67,15 +67,16 @@ private:
 class JournalWriter {
 public:
     explicit JournalWriter(Journal journal);
-    // Writes what waits, and ends.
-    ~JournalWriter();
+    ~JournalWriter() { finish(); }
     JournalWriter(const JournalWriter&) = delete;
     JournalWriter& operator=(const JournalWriter&) = delete;
 
     void post(const JournalEntry& entry);
     std::optional<Diagnostic> take_error();
-    // Instead of all entries that wait.
+    // At the end, instead of all entries that wait.
     void remove();
+    // Writes what waits, and ends; nothing may be posted any more.
+    void finish();
 
 private:
     void work();

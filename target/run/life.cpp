@@ -249,12 +249,17 @@ void Life::lift() {
     make(std::span(&leg, 1), from);
 }
 
+void Life::hear_of_journal() {
+    const std::optional<Diagnostic> error = journal_ ? journal_->take_error() : std::nullopt;
+    if (!error) return;
+    journal_error_ = error;
+    journal_error_->severity = Severity::warning;
+    message_ = error->message;
+}
+
 void Life::note() {
     if (!journal_) return;
-    if (const auto error = journal_->take_error()) {
-        journal_error_ = error;
-        message_ = error->message;
-    }
+    hear_of_journal();
     JournalEntry entry = noted_;
     entry.layer = layer_;
     entry.parked_nm.reset();
@@ -351,6 +356,7 @@ void Life::publish(PrintState state, bool is_position_known) {
 
 void Life::end(const Status& result, bool is_position_known) {
     phase_ = Phase::over;
+    hear_of_journal();
     if (!result) message_ = result.error().message;
     publish(result ? PrintState::done : PrintState::failed, is_position_known);
 }

@@ -93,6 +93,7 @@ private:
     void go_back();
     void lift();
     void note();
+    void hear_of_journal();
     motion::Point head() const;
     void returned();
     void unload();

@@ -369,11 +369,12 @@ Result<PrintReport> run(const PrintJob& job, const Prepared& prepared, gpio::Gpi
         planner.join();
         tending.join();
     }
-    if (life.journal_error()) report.warnings.push_back(*life.journal_error());
     const Status status = status_of(shared, life, running.outcome);
-    life.end(status, running.outcome.executed.ok() && shared.stop_requests < 2);
     if (journal && (status || life.is_cancelled())) journal->remove();
+    if (journal) journal->finish();
+    life.end(status, running.outcome.executed.ok() && shared.stop_requests < 2);
     if (!status) return status.error();
+    if (life.journal_error()) report.warnings.push_back(*life.journal_error());
     report_on(running.executor, running.traced, report);
     report.paused_s = life.paused_s();
     return report;

@@ -33,6 +33,8 @@ config::Printer buttoned_printer() {
     config::Printer printer = config::generic_printer();
     printer.pulse.late_limit_ns = 10'000'000'000;
     printer.heaters = {};
+    // Real time is not spent on the way.
+    printer.start_mm = {35, 25, 0};
     printer.pause.lift_mm = 0.3;
     printer.pause.retract_mm = 0.2;
     printer.filament = {0.5, 0.5, 0.5, 20};

@@ -28,6 +28,7 @@ config::Printer patient_printer() {
     printer.pulse.late_limit_ns = 10'000'000'000;
     printer.heaters = {};
     // Real time is not spent on the way.
+    printer.start_mm = {35, 25, 0};
     printer.pause.lift_mm = 0.3;
     printer.pause.retract_mm = 0.2;
     return printer;
