@@ -4,8 +4,10 @@
 // too large is noted, reads as 0, and makes its step an error.
 #include "lyr.h"
 
-enum { before_layers, in_layer, in_chunk, behind_layers };
 enum { metadata_block = 1, layer_block, chunk_block, index_block, end_block };
+// What may come next, a bit for each type.
+enum { due_first = 1 << layer_block | 1 << index_block, due_last = 1 << end_block };
+enum { due_in_layer = due_first | 1 << chunk_block };
 enum { helix_code = 0x44, grid_code = 0x46, smooth_run = 0x48, parallel_run, repeated_run };
 enum { head_bytes = 4, end_bytes = 36, longest_payload = 65528, skippable = 0xf0 };
 static const uint32_t right_crc = 0x48674bc7;  // of any bytes with their CRC behind them
@@ -15,15 +17,16 @@ static const int64_t hatch_limit = INT64_C(3) << 30, offset_limit = INT64_C(3) <
 
 static bool fine(const lyr_reader* r) { return r->status == LYR_OK; }
 static uint64_t left_of(const lyr_reader* r) { return (uint64_t)(r->end - r->at.cursor); }
-static uint64_t chunks_begun(const lyr_reader* r) { return r->chunks - r->chunks_before; }
 static uint64_t place(const lyr_reader* r) {
     return r->offset + head_bytes + (uint64_t)(r->at.cursor - r->buffer);
 }
 
 static bool fail(lyr_reader* r, lyr_status status) {
-    if (fine(r) && status == LYR_CUT_SHORT) r->offset = r->behind;
-    if (fine(r) && r->where == in_chunk) r->offset = place(r);
-    if (fine(r)) r->status = status;
+    if (fine(r)) {
+        if (r->in_chunk) r->offset = place(r);
+        if (status == LYR_CUT_SHORT) r->offset = r->behind;
+        r->status = status;
+    }
     r->at.cursor = r->end;
     return false;
 }
@@ -37,11 +40,10 @@ static bool fail_at_end(lyr_reader* r) {
 
 // Numbers.
 
-static bool beyond(int64_t value, int64_t limit) { return value < -limit || value > limit; }
-
 static int64_t within(lyr_reader* r, int64_t value, int64_t limit) {
-    r->too_large |= beyond(value, limit);
-    return beyond(value, limit) ? 0 : value;
+    const bool beyond = value < -limit || value > limit;
+    r->too_large |= beyond;
+    return beyond ? 0 : value;
 }
 static int32_t coordinate(lyr_reader* r, int64_t value) {
     return (int32_t)within(r, value, INT32_MAX);
@@ -148,7 +150,7 @@ static uint32_t get_settings(lyr_reader* r, lyr_setting* settings, uint32_t most
     return (uint32_t)count;
 }
 
-static void begin_layer(lyr_reader* r) {
+static void begin_layer(lyr_reader* r, lyr_operation* o) {
     lyr_layer* l = &r->layer;
     uint32_t* const settings[] = {&l->thickness,      &l->travel_speed,  &l->travel_acceleration,
                                   &l->tool,           &l->object,        &l->retracted,
@@ -176,18 +178,20 @@ static void begin_layer(lyr_reader* r) {
     r->style = (lyr_style){.flow = 100000};
     r->at = (struct lyr_place){.cursor = r->end, .head = l->start};
     r->decoder = (struct lyr_decoder){0};
-    r->chunks_before = r->chunks;
-    r->operations_before = r->operations;
-    r->where = in_layer;
+    r->due = due_in_layer;
+    *o = (lyr_operation){.kind = LYR_LAYER, .number = l->index, .offset = r->offset};
+    o->to = l->start;
 }
 
 static void begin_chunk(lyr_reader* r) {
+    struct lyr_decoder* d = &r->decoder;
     const uint64_t layer = get_varint(r), chunk = get_varint(r);
-    r->decoder.operations = get_varint(r);
-    check(r, layer == r->layer.index && chunk == chunks_begun(r) && chunk < r->layer.chunks);
-    r->operations += r->decoder.operations;
+    d->left = get_varint(r);
+    check(r, layer == r->layer.index && chunk == d->chunks++ && chunk < r->layer.chunks);
+    d->operations += d->left;
+    r->operations += d->left;
     ++r->chunks;
-    r->where = in_chunk;
+    r->in_chunk = true;
 }
 
 static void end_file(lyr_reader* r) {
@@ -204,24 +208,20 @@ static void end_file(lyr_reader* r) {
 static void end_layers(lyr_reader* r) {
     check(r, r->sought || (r->index_crc == r->offsets_crc && r->length == 8ull * r->layers));
     r->index_offset = r->offset;
-    r->where = behind_layers;
+    r->due = due_last;
 }
 
-// Whether a layer begins.
-static bool read_block(lyr_reader* r) {
+// Whether a layer begins, which is given out.
+static bool read_block(lyr_reader* r, lyr_operation* o) {
     const uint8_t type = r->type;
-    const bool known = type >= metadata_block && type <= end_block,
-               ahead = r->where != behind_layers;
-    const bool used = type == end_block     ? !ahead
-                      : type == chunk_block ? r->where == in_layer
-                                            : known && ahead && type != metadata_block;
+    const bool known = type > 0 && type <= end_block, used = known && r->due >> type & 1;
     if (!read_payload(r, used && type != index_block)) return false;
     if (!used) return type < 0x80 && fail(r, known ? LYR_NONSENSE : LYR_UNSUPPORTED);
-    if (r->where == in_layer && type != chunk_block)
-        check(r, chunks_begun(r) == r->layer.chunks &&
-                     r->operations - r->operations_before == r->layer.operations);
+    if (type != chunk_block)
+        check(r,
+              r->decoder.chunks == r->layer.chunks && r->decoder.operations == r->layer.operations);
     if (!fine(r)) return false;
-    if (type == layer_block) begin_layer(r);
+    if (type == layer_block) begin_layer(r, o);
     if (type == chunk_block) begin_chunk(r);
     if (type == index_block) end_layers(r);
     if (type == end_block) end_file(r);
@@ -297,8 +297,9 @@ static double square_root(double value) {
 // An arc is as long as its chord once it was halved so often that it is flat.
 static double length_of(const lyr_operation* o) {
     const double x = (double)o->to.x - o->from.x, y = (double)o->to.y - o->from.y;
+    static const double flat = 1e-10;  // of a slope's square: what the length is off by
     double length = square_root(x * x + y * y), slope = 2 * (double)o->sagitta / length;
-    while (slope * slope > 1e-10) {
+    while (slope * slope > flat) {
         const double longer = square_root(1 + slope * slope);
         length *= longer;
         slope /= 1 + longer;
@@ -319,10 +320,6 @@ static bool begin_wipe(lyr_reader* r, lyr_operation* o) {
 }
 
 // Packed runs. The specification gives the order of operations: each must be rounded by itself.
-
-struct motion_place {
-    int64_t x, y, sagitta;
-};
 
 static int64_t nearest(double value) {
     static const double limit = 1099511627776.0, whole = 6755399441055744.0;  // 2^40, 1.5 x 2^52
@@ -368,7 +365,9 @@ static struct direction direction_of(const lyr_motion* m, double side) {
                               8 * s / sum};
 }
 
-static struct motion_place beside(const lyr_motion* old, const lyr_motion* next, double distance) {
+// The place and the sagitta to expect beside `old`.
+static void go_beside(const lyr_motion* old, const lyr_motion* next, double distance,
+                      int64_t to[3]) {
     const bool joined = next->from_x == old->to_x && next->from_y == old->to_y;
     const struct direction e = direction_of(old, -1);
     struct direction n = joined ? direction_of(next, 1) : e;
@@ -378,9 +377,9 @@ static struct motion_place beside(const lyr_motion* old, const lyr_motion* next,
         cosine = one = e.size * e.size;
     }
     const double reach = distance / (one + cosine);
-    return (struct motion_place){nearest(old->to_x - reach * (e.y * n.size + n.y * e.size)),
-                                 nearest(old->to_y + reach * (e.x * n.size + n.x * e.size)),
-                                 nearest((double)old->sagitta * (1 - distance * e.curvature))};
+    to[0] = nearest(old->to_x - reach * (e.y * n.size + n.y * e.size));
+    to[1] = nearest(old->to_y + reach * (e.x * n.size + n.x * e.size));
+    to[2] = nearest((double)old->sagitta * (1 - distance * e.curvature));
 }
 
 // The sagitta that goes on smoothly from the motion before, along the chord (x, y).
@@ -400,17 +399,19 @@ static bool take_packed(lyr_reader* r, lyr_operation* o) {
     const lyr_point head = r->at.head;
     const int64_t x = get_difference(r, d->orders & 15), y = get_difference(r, d->orders & 15);
     const int64_t sagitta = get_difference(r, d->orders >> 4);
-    struct motion_place to = {head.x, head.y, 0};
+    int64_t to[3] = {head.x, head.y, 0};
     if (--r->at.left == 0) pass_bits(r, (8u - d->bit) % 8);
     if (d->code == smooth_run && d->motions > 0 && last->to_x == head.x && last->to_y == head.y)
-        to.sagitta = smooth_sagitta(last, (double)x, (double)y);
+        to[2] = smooth_sagitta(last, (double)x, (double)y);
     if (d->code == parallel_run)
-        to = beside(old, &r->history[d->old % LYR_HISTORY], (double)d->distance / 16);
-    if (d->code == repeated_run)
-        to = (struct motion_place){to.x + old->to_x - old->from_x, to.y + old->to_y - old->from_y,
-                                   old->sagitta};
-    o->to = (lyr_point){coordinate(r, to.x + x), coordinate(r, to.y + y), head.z};
-    o->sagitta = to.sagitta + sagitta;
+        go_beside(old, &r->history[d->old % LYR_HISTORY], (double)d->distance / 16, to);
+    if (d->code == repeated_run) {
+        to[0] += (int64_t)old->to_x - old->from_x;
+        to[1] += (int64_t)old->to_y - old->from_y;
+        to[2] = old->sagitta;
+    }
+    o->to = (lyr_point){coordinate(r, to[0] + x), coordinate(r, to[1] + y), head.z};
+    o->sagitta = to[2] + sagitta;
     return check(r, move(r, o, o->sagitta == 0 ? LYR_LINE : LYR_ARC));
 }
 
@@ -427,7 +428,7 @@ static bool begin_packed(lyr_reader* r) {
     r->at.left = get_varint(r);
     d->orders = get_byte(r);
     d->bit = 0;
-    d->operations -= r->at.left - 1;
+    d->left -= r->at.left - 1;
     // Each motion takes three bits at least.
     check(r, d->has_path && r->at.left > 0 && r->at.left <= left_of(r) * 8 / 3);
     return false;
@@ -506,8 +507,8 @@ static bool take_hatch(lyr_reader* r, lyr_operation* o) {
 static bool set_grid(lyr_reader* r) {
     int64_t* const g = r->grid;
     for (int i = 0; i < 4; ++i) g[i] = within(r, get_signed(r), i < 2 ? unit : offset_limit);
-    check(r, !beyond(g[0] * g[0] + g[1] * g[1] - unit * unit, 2 * unit));
-    r->decoder.has_grid = true;
+    within(r, g[0] * g[0] + g[1] * g[1] - unit * unit, 2 * unit);
+    r->decoder.has_grid = check(r, true);
     return false;
 }
 
@@ -537,7 +538,7 @@ static bool take_setting(lyr_reader* r, lyr_operation* o) {
 static bool take_step(lyr_reader* r, lyr_operation* o) {
     const bool begins = r->at.left == 0;
     const uint8_t code = r->decoder.code = begins ? get_byte(r) : r->decoder.code;
-    r->decoder.operations -= begins;
+    r->decoder.left -= begins;
     o->kind = (lyr_kind)code;
     if (code == grid_code) return set_grid(r);
     if (code == LYR_HATCH) return begins ? begin_hatch(r) : take_hatch(r, o);
@@ -552,7 +553,7 @@ static bool take_step(lyr_reader* r, lyr_operation* o) {
     }
     if (code > LYR_WIPE) return take_setting(r, o);
     if (begins) r->at.left = code < LYR_TRAVEL ? (code & 15) + 1 : 1;
-    if (begins) r->decoder.operations -= r->at.left - 1;
+    if (begins) r->decoder.left -= r->at.left - 1;
     return take_motion(r, o);
 }
 
@@ -560,19 +561,14 @@ bool lyr_next(lyr_reader* r, lyr_operation* o) {
     uint64_t begin = place(r);
     while (fine(r)) {
         *o = (lyr_operation){.offset = begin};
-        if (r->where != in_chunk) {
-            if (read_head(r) && read_block(r)) {
-                *o = (lyr_operation){.kind = LYR_LAYER, .offset = r->offset};
-                o->number = r->layer.index;
-                o->to = r->layer.start;
-                return true;
-            }
+        if (!r->in_chunk) {
+            if (read_head(r) && read_block(r, o)) return true;
             begin = place(r);
         } else if (r->at.left > 0 || left_of(r) > 0) {
             if (take_step(r, o) && fine(r)) return true;
-        } else if (check(r, r->decoder.operations == 0)) {
-            r->where = in_layer;
-            if (chunks_begun(r) == r->layer.chunks) r->whole_layers = r->layers;
+        } else if (check(r, r->decoder.left == 0)) {
+            r->in_chunk = false;
+            if (r->decoder.chunks == r->layer.chunks) r->whole_layers = r->layers;
         }
     }
     return false;
@@ -581,7 +577,7 @@ bool lyr_next(lyr_reader* r, lyr_operation* o) {
 bool lyr_open(lyr_reader* r, const lyr_source* source, void* buffer, uint32_t size) {
     static const uint8_t magic[] = {'L', 'Y', 'R', 0x1a};
     const uint8_t* at = buffer;
-    *r = (lyr_reader){.source = *source, .buffer = buffer};
+    *r = (lyr_reader){.source = *source, .buffer = buffer, .due = due_first};
     r->capacity = size < longest_payload ? size : longest_payload;
     for (uint32_t i = 0; i < 256; ++i) {
         r->crc_table[i] = i;
@@ -601,7 +597,7 @@ bool lyr_open(lyr_reader* r, const lyr_source* source, void* buffer, uint32_t si
     if (!check(r, r->quantum_nm - 1 <= 999999) || !read_head(r) ||
         !check(r, r->type == metadata_block) || !read_payload(r, true))
         return false;
-    while (read_head(r) && r->type != layer_block && r->type != index_block) read_block(r);
+    while (read_head(r) && r->type != layer_block && r->type != index_block) read_block(r, NULL);
     return fine(r);
 }
 
@@ -616,7 +612,10 @@ bool lyr_seek_layer(lyr_reader* r, uint32_t index) {
     r->status = LYR_OK;
     r->too_large = false;
     r->sought = true;
-    r->where = before_layers;
+    r->due = due_first;
+    r->in_chunk = false;
+    r->layer = (lyr_layer){0};
+    r->decoder = (struct lyr_decoder){0};
     r->whole_layers = 0;
     r->layers = index;
     if (!seek_to(r, size < last ? 0 : size - last) || !read_head(r)) return false;

@@ -125,10 +125,10 @@ typedef struct lyr_reader {
     lyr_style style;                    // as of the operation given out last
     int64_t grid[4];  // of hatches: a, b, offset, pitch in 2^-30, 2^-30, 2^-24 and 2^-24 quanta
     lyr_source source;
-    uint8_t *buffer, where, type;
-    bool has_head, too_large, sought;
+    uint8_t *buffer, due, type;
+    bool has_head, in_chunk, too_large, sought;
     uint32_t capacity, length, crc, index_crc, offsets_crc, layers, depth;
-    uint64_t behind, index_offset, chunks, chunks_before, operations, operations_before;
+    uint64_t behind, index_offset, chunks, operations;
     double way;
     const uint8_t* end;
     struct lyr_place {
@@ -139,7 +139,7 @@ typedef struct lyr_reader {
     struct lyr_decoder {
         bool has_path, has_grid, one_way, forward, linked;
         uint8_t code, orders, bit;
-        uint64_t operations, motions, old, rows, alike, ends, end;
+        uint64_t chunks, operations, left, motions, old, rows, alike, ends, end;
         int64_t back, distance, row, last, before[64][2];
     } decoder;
     uint32_t crc_table[256];
