@@ -5,12 +5,10 @@
 #include "lyr.h"
 
 enum { metadata_block = 1, layer_block, chunk_block, index_block, end_block };
-// What may come next, a bit for each type.
-enum { due_first = 1 << layer_block | 1 << index_block, due_last = 1 << end_block };
-enum { due_in_layer = due_first | 1 << chunk_block };
+enum { due_first = 1 << layer_block | 1 << index_block };  // a bit for each type
 enum { helix_code = 0x44, grid_code = 0x46, smooth_run = 0x48, parallel_run, repeated_run };
 enum { head_bytes = 4, end_bytes = 36, longest_payload = 65528, skippable = 0xf0 };
-static const uint32_t right_crc = 0x48674bc7;  // of any bytes with their CRC behind them
+static const uint32_t right_crc = 0xb798b438;  // of any bytes with their CRC behind them
 static const int64_t widest = INT64_C(1) << 57, row_limit = INT64_C(1) << 32;
 static const int64_t farthest_beside = INT64_C(1) << 36, unit = INT64_C(1) << 30;
 static const int64_t hatch_limit = INT64_C(3) << 30, offset_limit = INT64_C(3) << 54;
@@ -22,11 +20,9 @@ static uint64_t place(const lyr_reader* r) {
 }
 
 static bool fail(lyr_reader* r, lyr_status status) {
-    if (fine(r)) {
-        if (r->in_chunk) r->offset = place(r);
-        if (status == LYR_CUT_SHORT) r->offset = r->behind;
-        r->status = status;
-    }
+    if (fine(r) && r->in_chunk) r->offset = place(r);
+    if (fine(r) && status == LYR_CUT_SHORT) r->offset = r->behind;
+    if (fine(r)) r->status = status;
     r->at.cursor = r->end;
     return false;
 }
@@ -41,9 +37,8 @@ static bool fail_at_end(lyr_reader* r) {
 // Numbers.
 
 static int64_t within(lyr_reader* r, int64_t value, int64_t limit) {
-    const bool beyond = value < -limit || value > limit;
-    r->too_large |= beyond;
-    return beyond ? 0 : value;
+    r->too_large |= value < -limit || value > limit;
+    return r->too_large ? 0 : value;
 }
 static int32_t coordinate(lyr_reader* r, int64_t value) {
     return (int32_t)within(r, value, INT32_MAX);
@@ -60,10 +55,10 @@ static uint64_t get_fixed(const uint8_t* at, unsigned bytes) {
     return value;
 }
 
-static uint32_t crc32c(const lyr_reader* r, uint32_t before, const uint8_t* bytes, uint32_t count) {
-    uint32_t crc = ~before;
+// Without the final turn of the bits.
+static uint32_t crc32c(const lyr_reader* r, uint32_t crc, const uint8_t* bytes, uint32_t count) {
     while (count-- > 0) crc = crc >> 8 ^ r->crc_table[(crc ^ *bytes++) & 0xff];
-    return ~crc;
+    return crc;
 }
 
 static uint8_t get_byte(lyr_reader* r) {
@@ -71,12 +66,11 @@ static uint8_t get_byte(lyr_reader* r) {
 }
 
 static uint64_t get_varint(lyr_reader* r) {
-    uint64_t value = 0;
-    for (int shift = 0; shift < 64; shift += 7) {
-        const uint8_t next = get_byte(r);
-        value |= (uint64_t)(next & 0x7f) << shift;
-        if (shift == 63 && next > 1) fail_at_end(r);
-        if (next < 0x80) break;
+    uint64_t value = 0, next = 0x80;
+    for (int shift = 0; shift < 64 && next >= 0x80; shift += 7) {
+        next = get_byte(r);
+        if (shift == 63 && next > 1) return fail_at_end(r);
+        value |= (next & 0x7f) << shift;
     }
     return value;
 }
@@ -111,7 +105,7 @@ static bool read_bytes(lyr_reader* r, uint8_t* to, uint32_t count) {
 static bool read_head(lyr_reader* r) {
     if (r->has_head || !fine(r)) return fine(r);
     r->offset = r->behind;
-    r->crc = 0;
+    r->crc = UINT32_MAX;
     r->has_head = read_bytes(r, r->buffer, head_bytes);
     r->type = r->buffer[0];
     r->length = (uint32_t)get_fixed(r->buffer + 1, 3);
@@ -122,7 +116,7 @@ static bool read_head(lyr_reader* r) {
 static bool read_payload(lyr_reader* r, bool whole) {
     uint8_t crc[4];
     r->has_head = false;
-    r->index_crc = 0;
+    r->index_crc = UINT32_MAX;
     if (whole && r->length > r->capacity) return fail(r, LYR_TOO_LONG);
     for (uint32_t left = r->length, count; left > 0;) {
         count = left < r->capacity ? left : r->capacity;
@@ -155,6 +149,7 @@ static void begin_layer(lyr_reader* r, lyr_operation* o) {
     uint32_t* const settings[] = {&l->thickness,      &l->travel_speed,  &l->travel_acceleration,
                                   &l->tool,           &l->object,        &l->retracted,
                                   &l->retract_length, &l->retract_speed, &l->unretract_speed};
+    uint32_t* const crc = &r->offsets_crc;
     *l = (lyr_layer){.index = get_setting(r)};
     l->start = get_point(r, l->start, true);
     for (size_t i = 0; i < sizeof settings / sizeof *settings; ++i) *settings[i] = get_setting(r);
@@ -171,14 +166,11 @@ static void begin_layer(lyr_reader* r, lyr_operation* o) {
     check(r, l->extruded <= INT64_MAX && l->travelled <= INT64_MAX);
     check(r, l->index == r->layers++);
     if (fine(r) && l->chunks == 0) r->whole_layers = r->layers;
-    for (int i = 0; i < 8; ++i) {
-        const uint8_t byte = (uint8_t)(r->offset >> (8 * i) & 0xff);
-        r->offsets_crc = crc32c(r, r->offsets_crc, &byte, 1);
-    }
+    for (int i = 0; i < 64; i += 8) *crc = *crc >> 8 ^ r->crc_table[(*crc ^ r->offset >> i) & 0xff];
     r->style = (lyr_style){.flow = 100000};
     r->at = (struct lyr_place){.cursor = r->end, .head = l->start};
     r->decoder = (struct lyr_decoder){0};
-    r->due = due_in_layer;
+    r->due = due_first | 1 << chunk_block;
     *o = (lyr_operation){.kind = LYR_LAYER, .number = l->index, .offset = r->offset};
     o->to = l->start;
 }
@@ -208,7 +200,7 @@ static void end_file(lyr_reader* r) {
 static void end_layers(lyr_reader* r) {
     check(r, r->sought || (r->index_crc == r->offsets_crc && r->length == 8ull * r->layers));
     r->index_offset = r->offset;
-    r->due = due_last;
+    r->due = 1 << end_block;
 }
 
 // Whether a layer begins, which is given out.
@@ -217,7 +209,7 @@ static bool read_block(lyr_reader* r, lyr_operation* o) {
     const bool known = type > 0 && type <= end_block, used = known && r->due >> type & 1;
     if (!read_payload(r, used && type != index_block)) return false;
     if (!used) return type < 0x80 && fail(r, known ? LYR_NONSENSE : LYR_UNSUPPORTED);
-    if (type != chunk_block)
+    if (type != chunk_block && r->due & 1 << chunk_block)
         check(r,
               r->decoder.chunks == r->layer.chunks && r->decoder.operations == r->layer.operations);
     if (!fine(r)) return false;
@@ -418,11 +410,10 @@ static bool take_packed(lyr_reader* r, lyr_operation* o) {
 static bool begin_packed(lyr_reader* r) {
     struct lyr_decoder* d = &r->decoder;
     const int64_t kept = d->motions < LYR_HISTORY ? (int64_t)d->motions : LYR_HISTORY;
-    const int64_t least = d->code == parallel_run ? 2 : 1;
-    if (d->code != smooth_run) d->back = within(r, d->back + get_signed(r), LYR_HISTORY);
-    check(r, d->code == smooth_run || (d->back >= least && d->back <= kept));
-    if (d->code == parallel_run)
-        d->distance = within(r, d->distance + get_signed(r), farthest_beside);
+    const bool leans = d->code != smooth_run, beside = d->code == parallel_run;
+    if (leans) d->back = within(r, d->back + get_signed(r), LYR_HISTORY);
+    check(r, !leans || (d->back > beside && d->back <= kept));
+    if (beside) d->distance = within(r, d->distance + get_signed(r), farthest_beside);
     check(r, true);
     d->old = d->motions - (uint64_t)d->back;
     r->at.left = get_varint(r);
@@ -438,14 +429,14 @@ static bool begin_packed(lyr_reader* r) {
 
 static bool begin_hatch(lyr_reader* r) {
     struct lyr_decoder* d = &r->decoder;
-    const uint8_t flags = get_byte(r);
+    d->flags = get_byte(r);
     d->row = within(r, get_signed(r), row_limit);
     r->at.left = get_varint(r);
-    d->one_way = flags & 1;
-    d->forward = !(flags & 2);
+    d->forward = !(d->flags & 2);
     d->alike = 0;
     d->last = 0;
-    return check(r, flags <= 3 && d->has_path && d->has_grid && r->at.left <= (uint64_t)row_limit);
+    return check(r,
+                 d->flags <= 3 && d->has_path && d->has_grid && r->at.left <= (uint64_t)row_limit);
 }
 
 // Rows come in groups of as many intervals each, which have two values of a byte at least.
@@ -497,7 +488,7 @@ static bool take_hatch(lyr_reader* r, lyr_operation* o) {
     d->rows -= rows;
     d->row += (int64_t)rows;
     d->alike += rows;
-    d->forward ^= !d->one_way && rows % 2 == 1;
+    d->forward ^= !(d->flags & 1) && rows % 2 == 1;
     d->end = 0;
     return given;
 }
@@ -543,8 +534,7 @@ static bool take_step(lyr_reader* r, lyr_operation* o) {
     if (code == grid_code) return set_grid(r);
     if (code == LYR_HATCH) return begins ? begin_hatch(r) : take_hatch(r, o);
     if (code == LYR_WIPE && begins) return begin_wipe(r, o);
-    if (code >= smooth_run && code <= repeated_run)
-        return begins ? begin_packed(r) : take_packed(r, o);
+    if (code > LYR_HATCH && code < LYR_WIPE) return begins ? begin_packed(r) : take_packed(r, o);
     if (code >= skippable) {
         const uint64_t bytes = get_varint(r);
         if (bytes > left_of(r)) return fail_at_end(r);
@@ -578,6 +568,7 @@ bool lyr_open(lyr_reader* r, const lyr_source* source, void* buffer, uint32_t si
     static const uint8_t magic[] = {'L', 'Y', 'R', 0x1a};
     const uint8_t* at = buffer;
     *r = (lyr_reader){.source = *source, .buffer = buffer, .due = due_first};
+    r->crc = r->offsets_crc = UINT32_MAX;
     r->capacity = size < longest_payload ? size : longest_payload;
     for (uint32_t i = 0; i < 256; ++i) {
         r->crc_table[i] = i;
@@ -614,8 +605,6 @@ bool lyr_seek_layer(lyr_reader* r, uint32_t index) {
     r->sought = true;
     r->due = due_first;
     r->in_chunk = false;
-    r->layer = (lyr_layer){0};
-    r->decoder = (struct lyr_decoder){0};
     r->whole_layers = 0;
     r->layers = index;
     if (!seek_to(r, size < last ? 0 : size - last) || !read_head(r)) return false;

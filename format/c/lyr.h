@@ -137,8 +137,8 @@ typedef struct lyr_reader {
         uint64_t left;  // steps of the operation at hand: motions, pieces, rows
     } at;
     struct lyr_decoder {
-        bool has_path, has_grid, one_way, forward, linked;
-        uint8_t code, orders, bit;
+        bool has_path, has_grid, forward, linked;
+        uint8_t code, orders, bit, flags;
         uint64_t chunks, operations, left, motions, old, rows, alike, ends, end;
         int64_t back, distance, row, last, before[64][2];
     } decoder;
