@@ -118,13 +118,12 @@ static bool read_payload(lyr_reader* r, bool whole) {
     r->has_head = false;
     r->index_crc = UINT32_MAX;
     if (whole && r->length > r->capacity) return fail(r, LYR_TOO_LONG);
-    for (uint32_t left = r->length, count; left > 0;) {
+    for (uint32_t left = r->length, count; left > 0; left -= count) {
         count = left < r->capacity ? left : r->capacity;
-        left -= count;
         if (!read_bytes(r, r->buffer, count)) return false;
         if (r->type == index_block) r->index_crc = crc32c(r, r->index_crc, r->buffer, count);
         if (r->source.extra && (r->type >= 0x80 || r->type == metadata_block))
-            r->source.extra(r->source.user, r->type, r->buffer, count, left);
+            r->source.extra(r->source.user, r->type, r->buffer, count, left - count);
     }
     if (!read_bytes(r, crc, sizeof crc)) return false;
     r->at.cursor = r->buffer;
@@ -197,12 +196,6 @@ static void end_file(lyr_reader* r) {
     if (r->status == LYR_CUT_SHORT) r->status = LYR_END;
 }
 
-static void end_layers(lyr_reader* r) {
-    check(r, r->sought || (r->index_crc == r->offsets_crc && r->length == 8ull * r->layers));
-    r->index_offset = r->offset;
-    r->due = 1 << end_block;
-}
-
 // Whether a layer begins, which is given out.
 static bool read_block(lyr_reader* r, lyr_operation* o) {
     const uint8_t type = r->type;
@@ -215,9 +208,12 @@ static bool read_block(lyr_reader* r, lyr_operation* o) {
     if (!fine(r)) return false;
     if (type == layer_block) begin_layer(r, o);
     if (type == chunk_block) begin_chunk(r);
-    if (type == index_block) end_layers(r);
     if (type == end_block) end_file(r);
-    return fine(r) && type == layer_block;
+    if (type != index_block) return fine(r) && type == layer_block;
+    r->index_offset = r->offset;
+    r->due = 1 << end_block;
+    check(r, r->sought || (r->index_crc == r->offsets_crc && r->length == 8ull * r->layers));
+    return false;
 }
 
 // Motions. What takes a step returns whether there is something to give out.
@@ -264,8 +260,7 @@ static bool take_motion(lyr_reader* r, lyr_operation* o) {
     o->counter_clockwise = code % 2 == 0;
     check(r, o->to.x != head.x || o->to.y != head.y);
     o->to = (lyr_point){head.x, head.y, o->to.z};
-    move(r, o, LYR_CIRCLE);
-    return true;
+    return move(r, o, LYR_CIRCLE) || fine(r);
 }
 
 // Of 0 or at least 1: Newton's way from a root that is off by 6 %, and the nearest of its neighbours,
@@ -358,8 +353,7 @@ static struct direction direction_of(const lyr_motion* m, double side) {
 }
 
 // The place and the sagitta to expect beside `old`.
-static void go_beside(const lyr_motion* old, const lyr_motion* next, double distance,
-                      int64_t to[3]) {
+static void go_beside(const lyr_motion* old, const lyr_motion* next, double off, int64_t to[3]) {
     const bool joined = next->from_x == old->to_x && next->from_y == old->to_y;
     const struct direction e = direction_of(old, -1);
     struct direction n = joined ? direction_of(next, 1) : e;
@@ -368,10 +362,10 @@ static void go_beside(const lyr_motion* old, const lyr_motion* next, double dist
         n = e;
         cosine = one = e.size * e.size;
     }
-    const double reach = distance / (one + cosine);
+    const double reach = off / (one + cosine);
     to[0] = nearest(old->to_x - reach * (e.y * n.size + n.y * e.size));
     to[1] = nearest(old->to_y + reach * (e.x * n.size + n.x * e.size));
-    to[2] = nearest((double)old->sagitta * (1 - distance * e.curvature));
+    to[2] = nearest((double)old->sagitta * (1 - off * e.curvature));
 }
 
 // The sagitta that goes on smoothly from the motion before, along the chord (x, y).
@@ -439,28 +433,13 @@ static bool begin_hatch(lyr_reader* r) {
                  d->flags <= 3 && d->has_path && d->has_grid && r->at.left <= (uint64_t)row_limit);
 }
 
-// Rows come in groups of as many intervals each, which have two values of a byte at least.
-static void begin_group(lyr_reader* r) {
-    struct lyr_decoder* d = &r->decoder;
-    const uint64_t code = get_varint(r), ends = code & ~UINT64_C(1);
-    d->rows = get_varint(r);
-    check(r, d->rows - 1 < r->at.left && ends <= left_of(r) && d->rows * ends <= left_of(r));
-    if (ends != d->ends) d->alike = 0;
-    d->ends = ends;
-    d->linked = code & 1;
-}
-
-// How far off the row is. Doubles tell what would overflow.
-static int64_t row_offset(lyr_reader* r) {
-    const int64_t row = r->decoder.row, pitch = r->grid[3];
-    const double far = (double)row * (double)pitch, most = 3 * (double)offset_limit;
-    const bool near = far > -most && far < most;
-    return rounded(within(r, near ? r->grid[2] + row * pitch : INT64_MAX, offset_limit), 24);
-}
-
 static bool take_end(lyr_reader* r, lyr_operation* o) {
     struct lyr_decoder* d = &r->decoder;
-    const int64_t a = r->grid[0], b = r->grid[1], w = row_offset(r);
+    const int64_t a = r->grid[0], b = r->grid[1], pitch = r->grid[3];
+    // Doubles tell what would overflow.
+    const double far = (double)d->row * (double)pitch, most = 3 * (double)offset_limit;
+    const int64_t off = far > -most && far < most ? r->grid[2] + d->row * pitch : INT64_MAX;
+    const int64_t w = rounded(within(r, off, offset_limit), 24);
     const bool few = d->ends <= 64, travels = d->end % 2 == 0 && !(d->end == 0 && d->linked);
     const uint64_t j = d->forward ? d->end : d->ends - 1 - d->end;
     int64_t* const before = d->before[few ? j : 0];  // in the last two rows
@@ -477,9 +456,17 @@ static bool take_end(lyr_reader* r, lyr_operation* o) {
     return move(r, o, travels ? LYR_TRAVEL : LYR_LINE);
 }
 
+// Rows come in groups of as many intervals each, which have two values of a byte at least.
 static bool take_hatch(lyr_reader* r, lyr_operation* o) {
     struct lyr_decoder* d = &r->decoder;
-    if (d->rows == 0) begin_group(r);
+    if (d->rows == 0) {
+        const uint64_t code = get_varint(r), ends = code & ~UINT64_C(1);
+        d->rows = get_varint(r);
+        check(r, d->rows - 1 < r->at.left && ends <= left_of(r) && d->rows * ends <= left_of(r));
+        if (ends != d->ends) d->alike = 0;
+        d->ends = ends;
+        d->linked = code & 1;
+    }
     if (!fine(r)) return false;
     const bool given = d->ends > 0 && take_end(r, o);
     if (++d->end < d->ends) return given;
@@ -566,7 +553,6 @@ bool lyr_next(lyr_reader* r, lyr_operation* o) {
 
 bool lyr_open(lyr_reader* r, const lyr_source* source, void* buffer, uint32_t size) {
     static const uint8_t magic[] = {'L', 'Y', 'R', 0x1a};
-    const uint8_t* at = buffer;
     *r = (lyr_reader){.source = *source, .buffer = buffer, .due = due_first};
     r->crc = r->offsets_crc = UINT32_MAX;
     r->capacity = size < longest_payload ? size : longest_payload;
@@ -577,12 +563,12 @@ bool lyr_open(lyr_reader* r, const lyr_source* source, void* buffer, uint32_t si
     }
     if (size < LYR_LEAST_BUFFER) return fail(r, LYR_TOO_LONG);
     for (int i = 0; i < 4; ++i)
-        if (read_bytes(r, r->buffer + i, 1) && at[i] != magic[i]) fail(r, LYR_NO_LYR);
+        if (read_bytes(r, r->buffer + i, 1) && r->buffer[i] != magic[i]) fail(r, LYR_NO_LYR);
     if (!read_bytes(r, r->buffer + 4, 12)) return false;
     if (r->crc != right_crc) return fail(r, LYR_DAMAGED);
-    r->major = (uint32_t)get_fixed(at + 4, 2);
-    r->minor = (uint32_t)get_fixed(at + 6, 2);
-    r->quantum_nm = (uint32_t)get_fixed(at + 8, 4);
+    r->major = (uint32_t)get_fixed(r->buffer + 4, 2);
+    r->minor = (uint32_t)get_fixed(r->buffer + 6, 2);
+    r->quantum_nm = (uint32_t)get_fixed(r->buffer + 8, 4);
     r->offset = r->major == 1 ? 8 : 4;
     if (r->major != 1) return fail(r, LYR_UNSUPPORTED);
     if (!check(r, r->quantum_nm - 1 <= 999999) || !read_head(r) ||
@@ -601,10 +587,9 @@ static bool seek_to(lyr_reader* r, uint64_t offset) {
 bool lyr_seek_layer(lyr_reader* r, uint32_t index) {
     const uint64_t size = r->source.size, last = head_bytes + end_bytes + 4;
     r->status = LYR_OK;
-    r->too_large = false;
     r->sought = true;
+    r->too_large = r->in_chunk = false;
     r->due = due_first;
-    r->in_chunk = false;
     r->whole_layers = 0;
     r->layers = index;
     if (!seek_to(r, size < last ? 0 : size - last) || !read_head(r)) return false;
