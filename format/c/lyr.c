@@ -34,8 +34,6 @@ static bool fail_at_end(lyr_reader* r) {
     return fail(r, LYR_NONSENSE);
 }
 
-// Numbers.
-
 static int64_t within(lyr_reader* r, int64_t value, int64_t limit) {
     r->too_large |= value < -limit || value > limit;
     return r->too_large ? 0 : value;
@@ -125,10 +123,9 @@ static bool read_payload(lyr_reader* r, bool whole) {
         if (r->source.extra && (r->type >= 0x80 || r->type == metadata_block))
             r->source.extra(r->source.user, r->type, r->buffer, count, left - count);
     }
-    if (!read_bytes(r, crc, sizeof crc)) return false;
     r->at.cursor = r->buffer;
     r->end = r->buffer + (whole ? r->length : 0);
-    return r->crc == right_crc || fail(r, LYR_DAMAGED);
+    return (read_bytes(r, crc, sizeof crc) && r->crc == right_crc) || fail(r, LYR_DAMAGED);
 }
 
 static uint32_t get_settings(lyr_reader* r, lyr_setting* settings, uint32_t most, bool heaters) {
@@ -198,13 +195,13 @@ static void end_file(lyr_reader* r) {
 
 // Whether a layer begins, which is given out.
 static bool read_block(lyr_reader* r, lyr_operation* o) {
+    const struct lyr_decoder* d = &r->decoder;
     const uint8_t type = r->type;
     const bool known = type > 0 && type <= end_block, used = known && r->due >> type & 1;
     if (!read_payload(r, used && type != index_block)) return false;
     if (!used) return type < 0x80 && fail(r, known ? LYR_NONSENSE : LYR_UNSUPPORTED);
-    if (type != chunk_block && r->due & 1 << chunk_block)
-        check(r,
-              r->decoder.chunks == r->layer.chunks && r->decoder.operations == r->layer.operations);
+    if (type != chunk_block && r->due >> chunk_block & 1)
+        check(r, d->chunks == r->layer.chunks && d->operations == r->layer.operations);
     if (!fine(r)) return false;
     if (type == layer_block) begin_layer(r, o);
     if (type == chunk_block) begin_chunk(r);
@@ -263,8 +260,8 @@ static bool take_motion(lyr_reader* r, lyr_operation* o) {
     return move(r, o, LYR_CIRCLE) || fine(r);
 }
 
-// Of 0 or at least 1: Newton's way from a root that is off by 6 %, and the nearest of its neighbours,
-// c 2^-26. Of squares that are so near, the low 64 bits tell how they differ.
+// Of 0 or at least 1: Newton's way from a root that is off by 6 % at most, and the nearest of its
+// neighbours, c 2^-26. Of squares that are so near, the low 64 bits tell how they differ.
 static double square_root(double value) {
     union {
         double number;
@@ -283,8 +280,8 @@ static double square_root(double value) {
 
 // An arc is as long as its chord once it was halved so often that it is flat.
 static double length_of(const lyr_operation* o) {
-    const double x = (double)o->to.x - o->from.x, y = (double)o->to.y - o->from.y;
     static const double flat = 1e-10;  // of a slope's square: what the length is off by
+    const double x = (double)o->to.x - o->from.x, y = (double)o->to.y - o->from.y;
     double length = square_root(x * x + y * y), slope = 2 * (double)o->sagitta / length;
     while (slope * slope > flat) {
         const double longer = square_root(1 + slope * slope);
@@ -412,7 +409,6 @@ static bool begin_packed(lyr_reader* r) {
     d->old = d->motions - (uint64_t)d->back;
     r->at.left = get_varint(r);
     d->orders = get_byte(r);
-    d->bit = 0;
     d->left -= r->at.left - 1;
     // Each motion takes three bits at least.
     check(r, d->has_path && r->at.left > 0 && r->at.left <= left_of(r) * 8 / 3);
@@ -429,8 +425,8 @@ static bool begin_hatch(lyr_reader* r) {
     d->forward = !(d->flags & 2);
     d->alike = 0;
     d->last = 0;
-    return check(r,
-                 d->flags <= 3 && d->has_path && d->has_grid && r->at.left <= (uint64_t)row_limit);
+    check(r, r->at.left <= (uint64_t)row_limit);
+    return check(r, d->flags <= 3 && d->has_path && d->has_grid);
 }
 
 static bool take_end(lyr_reader* r, lyr_operation* o) {
@@ -552,7 +548,6 @@ bool lyr_next(lyr_reader* r, lyr_operation* o) {
 }
 
 bool lyr_open(lyr_reader* r, const lyr_source* source, void* buffer, uint32_t size) {
-    static const uint8_t magic[] = {'L', 'Y', 'R', 0x1a};
     *r = (lyr_reader){.source = *source, .buffer = buffer, .due = due_first};
     r->crc = r->offsets_crc = UINT32_MAX;
     r->capacity = size < longest_payload ? size : longest_payload;
@@ -563,16 +558,15 @@ bool lyr_open(lyr_reader* r, const lyr_source* source, void* buffer, uint32_t si
     }
     if (size < LYR_LEAST_BUFFER) return fail(r, LYR_TOO_LONG);
     for (int i = 0; i < 4; ++i)
-        if (read_bytes(r, r->buffer + i, 1) && r->buffer[i] != magic[i]) fail(r, LYR_NO_LYR);
-    if (!read_bytes(r, r->buffer + 4, 12)) return false;
-    if (r->crc != right_crc) return fail(r, LYR_DAMAGED);
+        if (read_bytes(r, r->buffer + i, 1) && r->buffer[i] != "LYR\x1a"[i]) fail(r, LYR_NO_LYR);
+    if (!read_bytes(r, r->buffer + 4, 12) || r->crc != right_crc) return fail(r, LYR_DAMAGED);
     r->major = (uint32_t)get_fixed(r->buffer + 4, 2);
     r->minor = (uint32_t)get_fixed(r->buffer + 6, 2);
     r->quantum_nm = (uint32_t)get_fixed(r->buffer + 8, 4);
     r->offset = r->major == 1 ? 8 : 4;
     if (r->major != 1) return fail(r, LYR_UNSUPPORTED);
-    if (!check(r, r->quantum_nm - 1 <= 999999) || !read_head(r) ||
-        !check(r, r->type == metadata_block) || !read_payload(r, true))
+    check(r, r->quantum_nm - 1 <= 999999);
+    if (!read_head(r) || !check(r, r->type == metadata_block) || !read_payload(r, true))
         return false;
     while (read_head(r) && r->type != layer_block && r->type != index_block) read_block(r, NULL);
     return fine(r);
@@ -596,9 +590,9 @@ bool lyr_seek_layer(lyr_reader* r, uint32_t index) {
     if (r->type != end_block || r->length != end_bytes) return fail(r, LYR_CUT_SHORT);
     if (!read_payload(r, true)) return false;
     const uint64_t layers = get_fixed(r->buffer, 4);
-    if (!seek_to(r, get_fixed(r->buffer + 28, 8)) || !read_head(r) ||
-        !check(r, r->type == index_block && r->length == 8 * layers) || !read_payload(r, false))
-        return false;
+    if (!seek_to(r, get_fixed(r->buffer + 28, 8)) || !read_head(r)) return false;
+    check(r, r->type == index_block && r->length == 8 * layers);
+    if (!fine(r) || !read_payload(r, false)) return false;
     if (index >= layers) return fail(r, LYR_NO_SUCH_LAYER);
     return seek_to(r, r->offset + head_bytes + 8ull * index) && read_bytes(r, r->buffer, 8) &&
            seek_to(r, get_fixed(r->buffer, 8)) && read_head(r) && check(r, r->type == layer_block);
