@@ -84,6 +84,21 @@ TEST_CASE("C reader 3 and 4: the same verdict on any byte of any payload, with a
     }
 }
 
+TEST_CASE(
+    "C reader 3 and 4: the same verdict on a payload that is cut or goes on, with a right CRC") {
+    const FileBytes file = test::small_file();
+    const std::vector<test::Block> blocks = test::split(file);
+    for (std::size_t i = 1; i < blocks.size(); ++i) {
+        const std::size_t size = blocks[i].payload.size();
+        for (std::size_t other = 0; other < size + 20; ++other) {
+            auto changed = blocks;
+            changed[i].payload.resize(other, static_cast<std::byte>(other % 2 ? 0xff : 0));
+            INFO("block " << i << " of " << other << " bytes");
+            REQUIRE(difference(test::join(file, changed)) == "");
+        }
+    }
+}
+
 TEST_CASE("C reader 3: blocks that are missing, doubled, swapped or of another type") {
     const FileBytes file = test::small_file();
     const auto same = [](const FileBytes& bytes, const auto&) { CHECK(difference(bytes) == ""); };
