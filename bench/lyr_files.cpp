@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/text.h"
 #include "bench/long_print.h"
 #include "bench/lyr_kinds.h"
 #include "bench/measure.h"
@@ -59,8 +60,8 @@ Read read_once(const std::string& path) {
 // In a process that does nothing else, so that its memory is the reader's.
 Read read_apart(const std::string& path) {
     Read read;
-    const std::string command =
-        "'" + std::filesystem::read_symlink("/proc/self/exe").string() + "' --read '" + path + "'";
+    const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();
+    const std::string command = formatted("'%s' --read '%s'", program.c_str(), path.c_str());
     std::FILE* output = popen(command.c_str(), "r");
     if (!output) return read;
     if (std::fscanf(output, "%lf %lf %lf %lf", &read.operations, &read.bytes, &read.seconds,

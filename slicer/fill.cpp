@@ -7,6 +7,7 @@
 #include "kernel/toolpath/centre_lines.h"
 #include "kernel/toolpath/infill.h"
 #include "kernel/toolpath/internal_bridges.h"
+#include "kernel/toolpath/islands.h"
 
 namespace lyr::slicer {
 namespace {
@@ -69,6 +70,29 @@ SkinRequest skin_request(const Options& options) {
             .allowed_mm = options.tolerance().unite_mm()};
 }
 
+// How much more the strands of a narrow part lay down than along their way: they end half their width before it does, and
+// what is around their ends is material too. No more than goes around ends, twice as wide as the strands at most.
+double flow_to_ends(std::span<const Strand> strands, double part_mm2) {
+    double laid_mm2 = 0, most_mm2 = 0;
+    for (const Strand& strand : strands) {
+        const double length = length_mm(strand.path);
+        double covered = strand.width_mm * length;
+        if (const auto* path = std::get_if<Path>(&strand.path); path && !strand.widths_mm.empty()) {
+            covered = 0;
+            Point2 from = path->start;
+            for (std::size_t i = 0; i < path->segments.size(); ++i) {
+                covered += strand.widths_mm[i] * lyr::length_mm(from, path->segments[i]);
+                from = path->segments[i].end;
+            }
+        }
+        laid_mm2 += covered;
+        const double width_mm = length > 0 ? covered / length : 0;
+        if (!is_closed(strand)) most_mm2 += 4 * width_mm * width_mm;
+    }
+    if (!(laid_mm2 > 0)) return 1;
+    return 1 + std::clamp(part_mm2 - laid_mm2, 0.0, most_mm2) / laid_mm2;
+}
+
 class Filler {
 public:
     Filler(std::size_t index, const LayerSpan& span, const Options& options)
@@ -96,18 +120,20 @@ public:
     // From flank to flank: of thin walls, these are the outline.
     void narrow(Region region, std::span<const Joint> joints, format::Role role, double least_mm,
                 double flank_mm) {
-        if (region.empty()) return;
-        CentreLines lines = centre_lines(region,
-                                         {.min_width_mm = least_mm,
-                                          .max_width_mm = profile_.perimeters.max_width_mm,
-                                          .allowed_mm = allowed_mm_},
-                                         joints);
-        fill.unresolved += lines.unresolved;
-        if (role == format::Role::thin_wall) fill.thin_left_out_mm2 += lines.left_out_mm2;
-        for (Strand& strand : lines.strands) {
-            strand.width_mm += 2 * flank_mm;
-            for (double& width : strand.widths_mm) width += 2 * flank_mm;
-            fill.pieces.push_back({role, std::move(strand)});
+        for (const std::vector<Contour>& part : parts_of(region)) {
+            CentreLines lines = centre_lines(part,
+                                             {.min_width_mm = least_mm,
+                                              .max_width_mm = profile_.perimeters.max_width_mm,
+                                              .allowed_mm = allowed_mm_},
+                                             joints);
+            fill.unresolved += lines.unresolved;
+            if (role == format::Role::thin_wall) fill.thin_left_out_mm2 += lines.left_out_mm2;
+            const double flow = flow_to_ends(lines.strands, area_mm2(part) - lines.left_out_mm2);
+            for (Strand& strand : lines.strands) {
+                strand.width_mm += 2 * flank_mm;
+                for (double& width : strand.widths_mm) width += 2 * flank_mm;
+                fill.pieces.push_back({role, std::move(strand), flow});
+            }
         }
     }
 

@@ -82,7 +82,7 @@ typedef enum lyr_kind {
     LYR_TRAVEL = 0x40,        // without extruding
     LYR_CIRCLE = 0x42,        // a turn about center_x, center_y; `to` is off `from` in z at most
     LYR_HATCH = 0x47,         // a run begins; its lines and travels follow
-    LYR_WIPE = 0x4b,          // a piece: sagitta (0: a line); value: depth, um; number: pieces left
+    LYR_WIPE = 0x4b,          // a piece: sagitta (0: a line); value: depth, um; way
     LYR_PATH = 0x50,          // the style from here on; the next three change it
     LYR_WIDTH = 0x51,         // value: 0.1 um
     LYR_SPEED = 0x52,         // value: 0.01 mm/s
@@ -106,6 +106,7 @@ typedef struct lyr_operation {
     lyr_point from, to;
     int32_t center_x, center_y;
     int64_t sagitta;
+    double way;       // of a wipe as a whole, in quanta
     uint64_t offset;  // byte of the file where it begins
 } lyr_operation;
 
@@ -124,24 +125,24 @@ typedef struct lyr_reader {
     lyr_style style;                    // as of the operation given out last
     int64_t grid[4];  // of hatches: a, b, offset, pitch in 2^-30, 2^-30, 2^-24 and 2^-24 quanta
     lyr_source source;
-    uint8_t *buffer, where, type;
-    bool has_head, too_large, sought;
-    uint32_t capacity, length, crc, index_crc, offsets_crc, layers;
-    uint64_t behind, index_offset, chunks, chunks_before, operations, operations_before;
+    uint8_t *buffer, due, type;
+    bool has_head, in_chunk, too_large, sought;
+    uint32_t capacity, length, crc, index_crc, offsets_crc, layers, depth;
+    uint64_t behind, index_offset, chunks, operations;
+    double way;
     const uint8_t* end;
     struct lyr_place {
         const uint8_t* cursor;
         lyr_point head;
-        uint64_t left;          // steps of the operation at hand: motions, pieces, rows
-        uint32_t moves, depth;  // pieces of a wipe that have a length; um
-    } at, wipe;
+        uint64_t left;  // steps of the operation at hand: motions, pieces, rows
+    } at;
     struct lyr_decoder {
-        bool has_path, has_grid, one_way, forward, linked;
-        uint8_t code, orders, bit;
-        uint64_t operations, motions, measured, old, group_rows, intervals, alike, ends_left;
-        double length;
-        int64_t back, distance, row, row_offset, last, ends[64][2];
+        bool has_path, has_grid, forward, linked;
+        uint8_t code, orders, bit, flags;
+        uint64_t chunks, operations, left, motions, old, rows, alike, ends, end;
+        int64_t back, distance, row, last, before[64][2];
     } decoder;
+    uint32_t crc_table[256];
     lyr_motion history[LYR_HISTORY];
 } lyr_reader;
 
@@ -150,11 +151,8 @@ bool lyr_open(lyr_reader* reader, const lyr_source* source, void* buffer, uint32
 // The next operation. False: the end (LYR_END) or an error.
 bool lyr_next(lyr_reader* reader, lyr_operation* operation);
 // Goes by the index: the next operation will be LYR_LAYER of this layer (from 0). The end is then
-// checked without counts and index.
+// checked without counts and index. Only for a reader that was opened.
 bool lyr_seek_layer(lyr_reader* reader, uint32_t index);
-// Behind a piece of a wipe: all its pieces are given out again. So the whole way can be added up,
-// and with it how fast the filament is to be drawn back, before the first piece is carried out.
-void lyr_wipe_again(lyr_reader* reader);
 
 #ifdef __cplusplus
 }

@@ -32,6 +32,78 @@ private:
     std::vector<std::uint32_t> next_;  // on the way to the one that stands for the part
 };
 
+// Where a face may be higher than a border that none of its edges is above.
+//
+// What of the surface is above all edges is crossed by none: each part of it that hangs together is in the face as a
+// whole, or out of it; and out of it where it reaches the surface's rim, but for a pole. So there is one place to ask
+// about, the highest of each part. Edges lie beside their surface, though, by round-off at least. Up to `doubtful_mm` above
+// the border, parts on both sides of an edge may hang together, and a rim may be that much higher than the edges on it:
+// there it is asked about each place that has no higher neighbour.
+class Tops {
+public:
+    Tops(const HeightMesh& mesh, double up, double border_mm, bool has_poles)
+        : mesh_(mesh), up_(up), border_mm_(border_mm), has_poles_(has_poles) {}
+
+    // Vertices of the mesh.
+    std::vector<std::uint32_t> found() const {
+        std::vector<std::uint32_t> tops = of_parts();
+        const std::vector<std::uint32_t> low = doubtful();
+        tops.insert(tops.end(), low.begin(), low.end());
+        return tops;
+    }
+
+private:
+    // More than edges of sound models are off, and less than is worth a thought.
+    static constexpr double doubtful_mm = 0.1;
+
+    double height_mm(std::uint32_t vertex) const { return up_ * mesh_.vertices[vertex].z_mm; }
+    bool is_sure(std::uint32_t vertex) const {
+        return height_mm(vertex) > border_mm_ + doubtful_mm;
+    }
+
+    std::vector<std::uint32_t> of_parts() const {
+        Parts parts(mesh_.vertices.size());
+        for (const BorderPiece& piece : mesh_.pieces)
+            if (is_sure(piece.from) && is_sure(piece.to)) parts.join(piece.from, piece.to);
+        constexpr std::uint32_t none = ~std::uint32_t{0};
+        std::vector<std::uint32_t> highest(mesh_.vertices.size(), none);  // by part
+        std::vector<bool> reaches_rim(mesh_.vertices.size(), false);
+        for (const BorderPiece& piece : mesh_.pieces) {
+            for (const std::uint32_t vertex : {piece.from, piece.to}) {
+                if (!is_sure(vertex)) continue;
+                const std::uint32_t part = parts.of(vertex);
+                if (highest[part] == none || height_mm(vertex) > height_mm(highest[part]))
+                    highest[part] = vertex;
+                if (!has_poles_ && (piece.left < 0 || piece.right < 0)) reaches_rim[part] = true;
+            }
+        }
+        std::vector<std::uint32_t> tops;
+        for (std::uint32_t part = 0; part < highest.size(); ++part)
+            if (highest[part] != none && !reaches_rim[part]) tops.push_back(highest[part]);
+        return tops;
+    }
+
+    std::vector<std::uint32_t> doubtful() const {
+        std::vector<bool> has_higher(mesh_.vertices.size(), false);
+        std::vector<bool> used(mesh_.vertices.size(), false);  // the doubles at a seam are not
+        for (const BorderPiece& piece : mesh_.pieces) {
+            const double rise = height_mm(piece.to) - height_mm(piece.from);
+            used[piece.from] = used[piece.to] = true;
+            if (rise > 0) has_higher[piece.from] = true;
+            if (rise < 0) has_higher[piece.to] = true;
+        }
+        std::vector<std::uint32_t> tops;
+        for (std::uint32_t v = 0; v < mesh_.vertices.size(); ++v)
+            if (used[v] && !has_higher[v] && height_mm(v) > border_mm_ && !is_sure(v))
+                tops.push_back(v);
+        return tops;
+    }
+
+    const HeightMesh& mesh_;
+    double up_, border_mm_;
+    bool has_poles_;
+};
+
 }  // namespace
 
 FreeformFace::FreeformFace(const Model& model, FaceId face,
@@ -62,36 +134,16 @@ HeightRange FreeformFace::extended(HeightRange range) const {
                                               range.bottom_mm, range.top_mm));
 }
 
-// What of the surface is above all edges of the face is crossed by none: each part of it that hangs together is in the
-// face as a whole, or out of it. It is out of it where it reaches the surface's rim, but for a pole. Its highest point is a
-// vertex of the mesh, to flat_cell_mm.
 HeightRange FreeformFace::extended(HeightRange range, const HeightMesh& mesh) const {
     const bool has_poles = !poles_of(model_[face_].surface).empty();
     for (const double up : {1.0, -1.0}) {
         const double border_mm = up > 0 ? range.top_mm : -range.bottom_mm;
-        const auto height_mm = [&](std::uint32_t v) { return up * mesh.vertices[v].z_mm; };
-        Parts parts(mesh.vertices.size());
-        for (const BorderPiece& piece : mesh.pieces)
-            if (height_mm(piece.from) > border_mm && height_mm(piece.to) > border_mm)
-                parts.join(piece.from, piece.to);
-        constexpr std::uint32_t none = ~std::uint32_t{0};
-        std::vector<std::uint32_t> highest(mesh.vertices.size(), none);  // by part
-        std::vector<bool> reaches_rim(mesh.vertices.size(), false);
-        for (const BorderPiece& piece : mesh.pieces) {
-            for (const std::uint32_t vertex : {piece.from, piece.to}) {
-                if (!(height_mm(vertex) > border_mm)) continue;
-                const std::uint32_t part = parts.of(vertex);
-                if (highest[part] == none || height_mm(vertex) > height_mm(highest[part]))
-                    highest[part] = vertex;
-                if (!has_poles && (piece.left < 0 || piece.right < 0)) reaches_rim[part] = true;
-            }
-        }
-        for (std::uint32_t part = 0; part < highest.size(); ++part) {
-            if (highest[part] == none || reaches_rim[part]) continue;
-            const MeshVertex& top = mesh.vertices[highest[part]];
-            const bool is_beyond = up > 0 ? top.z_mm > range.top_mm : top.z_mm < range.bottom_mm;
-            if (!is_beyond || !containment().holds_parameters(top.uv)) continue;
-            (up > 0 ? range.top_mm : range.bottom_mm) = top.z_mm;
+        for (const std::uint32_t top : Tops(mesh, up, border_mm, has_poles).found()) {
+            const MeshVertex& vertex = mesh.vertices[top];
+            const bool is_beyond =
+                up > 0 ? vertex.z_mm > range.top_mm : vertex.z_mm < range.bottom_mm;
+            if (!is_beyond || !containment().holds_parameters(vertex.uv)) continue;
+            (up > 0 ? range.top_mm : range.bottom_mm) = vertex.z_mm;
         }
     }
     return range;

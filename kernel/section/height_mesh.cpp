@@ -151,10 +151,6 @@ private:
     std::vector<double> turns_;
 };
 
-}  // namespace
-
-namespace {
-
 // Where a B-spline may have a corner: knots that are there as often as its degree says.
 std::vector<double> creases_of(const std::vector<double>& knots, int degree) {
     std::vector<double> creases;

@@ -160,7 +160,13 @@ region::Box2 BoundaryPiece::box() const {
 }
 
 std::vector<BoundaryPiece> boundary_pieces(Region region) {
+    std::size_t segments = 0;
+    for (const Contour& contour : region) {
+        const auto* path = std::get_if<Path>(&contour);
+        segments += path ? path->segments.size() : 1;
+    }
     std::vector<BoundaryPiece> pieces;
+    pieces.reserve(segments);
     for (std::uint32_t c = 0; c < region.size(); ++c) {
         if (const auto* circle = std::get_if<FullCircle>(&region[c])) {
             pieces.push_back(piece_of(*circle, c));

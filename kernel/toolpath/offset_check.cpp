@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "kernel/geometry/tolerance.h"
@@ -24,8 +25,10 @@ constexpr double pi = std::numbers::pi;
 constexpr double disc_share = 4;
 constexpr double boundary_share = 2;
 
-// Places beside a contour where the result's boundary is looked for are so far apart, in distances (twice that along a
-// segment), and no more than so many a segment: what lies between two of them may be lost unseen.
+// The result's boundary is looked for beside a segment's middle if so much of the contour, in distances, has passed since a
+// disc fitted, and beside longer ones in places that are twice the second apart, and no more than so many: what lies between
+// two of them may be lost unseen.
+constexpr double beside_share = 1;
 constexpr double apart_share = 2;
 constexpr double most_places = 9;
 
@@ -78,7 +81,8 @@ private:
     Fault wrong_side() const;
     Fault wrong_area() const;
     bool may_be_mitred(const Point2& point) const;
-    Fault missing_beside(const Point2& place, const Vector2& towards,
+    std::optional<Point2> deep_beside(const Point2& place, const Vector2& towards) const;
+    Fault missing_beside(const Point2& place, const Vector2& towards, const Point2& deep,
                          std::vector<bool>::reference counted) const;
     double beside_mm(const BoundaryPiece& piece) const;
     double places_beside(const BoundaryPiece& piece) const;
@@ -179,14 +183,18 @@ bool Check::may_be_mitred(const Point2& point) const {
     return mitred;
 }
 
-// The disc around a point deep in the offset, up to the place it is beside, has no boundary of the region in it, or
-// nothing is asked. Then on the way there from the place, the middle of which is surely not in the offset, is the
-// offset's boundary: at the distance. Windings are counted once a contour.
-Check::Fault Check::missing_beside(const Point2& place, const Vector2& towards,
-                                   std::vector<bool>::reference counted) const {
+// A point deep in the offset beside a place, if the disc around it up to there has no boundary of the region in it.
+std::optional<Point2> Check::deep_beside(const Point2& place, const Vector2& towards) const {
     const double reach_mm = distance_mm_ + disc_share * slack_mm_;
     const Point2 deep = place + reach_mm * towards;
     if (source_.is_near(deep, reach_mm - resolution_mm)) return std::nullopt;
+    return deep;
+}
+
+// On the way to a point deep in the offset from the place that it is beside, the middle of which is surely not in the
+// offset, is the offset's boundary: at the distance. Windings are counted once a contour.
+Check::Fault Check::missing_beside(const Point2& place, const Vector2& towards, const Point2& deep,
+                                   std::vector<bool>::reference counted) const {
     const Point2 expected = place + distance_mm_ * towards;
     bool found = result_.is_near(expected, boundary_share * slack_mm_);
     if (found && !counted) {
@@ -218,21 +226,25 @@ double Check::places_beside(const BoundaryPiece& piece) const {
 Check::Fault Check::missing() const {
     Fault found;
     std::vector<bool> counted(source_contours_.size(), false);
+    // Whether a disc fits there.
     const auto look = [&](const BoundaryPiece& piece, const Point2& place, const Vector2& tangent) {
-        if (!found) found = missing_beside(place, across(tangent), counted[piece.contour]);
+        const Vector2 towards = across(tangent);
+        const auto deep = found ? std::nullopt : deep_beside(place, towards);
+        if (deep) found = missing_beside(place, towards, *deep, counted[piece.contour]);
+        return deep.has_value();
     };
-    std::uint32_t contour = 0;
-    double unseen_mm = 0;  // beside it, up to here
+    constexpr double far_mm = std::numeric_limits<double>::infinity();
+    std::optional<std::uint32_t> contour;
+    double unseen_mm = 0;  // beside the contour, since a disc fitted beside a piece of it
     for_neighbours(source_.pieces(), [&](const BoundaryPiece& before, const BoundaryPiece& piece) {
-        const bool is_first = &piece == source_.pieces().data() || piece.contour != contour;
+        if (contour != piece.contour) unseen_mm = far_mm;
         contour = piece.contour;
         unseen_mm += beside_mm(piece);
-        if (is_first || unseen_mm >= apart_share * distance_mm_) {
-            unseen_mm = 0;
+        if (unseen_mm >= beside_share * distance_mm_) {
             const double places = places_beside(piece);
             for (double i = 0.5; i < places; ++i) {
                 const BoundaryPoint place = piece.at(i / places);
-                look(piece, place.point, place.tangent);
+                if (look(piece, place.point, place.tangent)) unseen_mm = 0;
             }
         }
         const Vector2 middle = before.end_tangent + piece.start_tangent;

@@ -54,6 +54,7 @@ Side side_of(const Point2& start, const Segment& segment, double distance_mm) {
 std::vector<Side> sides_of(const Path& path, double distance_mm) {
     std::vector<Side> sides;
     Path kept{path.start, {}};
+    kept.segments.reserve(path.segments.size());
     Point2 from = path.start;
     for (const Segment& segment : path.segments) {
         if ((segment.end - from).norm() <= resolution_mm &&
@@ -64,6 +65,7 @@ std::vector<Side> sides_of(const Path& path, double distance_mm) {
         from = segment.end;
     }
     if (kept.segments.size() < 2) return sides;
+    sides.reserve(kept.segments.size());
     kept.segments.back().end = from = path.start;
     for (const Segment& segment : kept.segments) {
         sides.push_back(side_of(from, segment, distance_mm));
@@ -243,6 +245,7 @@ bool CurveBuilder::trim() {
 // cross.
 std::optional<std::size_t> CurveBuilder::cut(std::vector<Rest>& rests) const {
     rests.clear();
+    rests.reserve(sides_.size());
     for (const Side& side : sides_) {
         const region::Curve parallel = region::curve_of(side.parallel_start, side.parallel());
         rests.push_back({parallel, -parallel.half_mm, parallel.half_mm});
@@ -265,6 +268,7 @@ std::optional<std::size_t> CurveBuilder::cut(std::vector<Rest>& rests) const {
 std::optional<Contour> CurveBuilder::result() {
     if (sides_.empty()) return std::nullopt;
     at_ = path_.start = start();
+    path_.segments.reserve(sides_.size() + 1);
     for (std::size_t i = 0; i < sides_.size(); ++i) {
         add_side(i);
         add_joint(i);
@@ -272,7 +276,7 @@ std::optional<Contour> CurveBuilder::result() {
     line_to(path_.start);
     if (path_.segments.size() < 2) return std::nullopt;
     path_.segments.back().end = path_.start;
-    return path_;
+    return std::move(path_);
 }
 
 std::optional<Contour> circle_beside(const FullCircle& circle, double distance_mm) {

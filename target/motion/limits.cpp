@@ -69,7 +69,7 @@ Folded folded_sweep(const Arc& arc) {
 // The largest A with A sin(p) + C cos(p) <= limit for all p of the range: what is left in the
 // direction of motion when C is needed along the radius. The tightest p has cos(p) = C / limit.
 double left_over(double needed, double limit, const Folded& range) {
-    const double cosine = needed / limit;
+    const double cosine = limit > 0 ? needed / limit : 1;
     Direction tightest{cosine, std::sqrt(std::max(0.0, 1 - cosine * cosine))};
     if (cosine >= range.low.cosine) tightest = range.low;
     if (cosine <= range.high.cosine) tightest = range.high;

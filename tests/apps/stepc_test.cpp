@@ -281,3 +281,23 @@ TEST_CASE("stepc: the print states the SHA-256 of the model's file, and has two 
     // The same for any number of threads.
     CHECK(png == text_of(folder / "q.lyr.png"));
 }
+
+// They came out without their domes where the surface's rim, or a bump beyond the edges, was by round-off above the edges.
+TEST_CASE("stepc: a dome is sliced whole, however its surface goes on beyond its edges") {
+    const Folder folder("stepc-dome");
+    const auto height_mm = [&](const std::string& dome, const std::string& up) {
+        folder.copy("domes/" + dome, dome);
+        const Ended ended = folder.run("stepc " + dome + " --layer-height 0.4" + up);
+        REQUIRE(ended.status == 0);
+        const std::size_t end = ended.out.find(" mm at 0.4 mm a layer");
+        REQUIRE(end != std::string::npos);
+        return std::stod(ended.out.substr(ended.out.rfind(' ', end - 1)));
+    };
+    CHECK(height_mm("rim_above_edges.step", "") == doctest::Approx(21.25));
+    CHECK(height_mm("askew.step",
+                    " --up 0.25934338005223079,-0.47942553860420301,0.83838664359420356") ==
+          doctest::Approx(21.25));
+    CHECK(height_mm("flat_margin.step",
+                    " --up 0.29221464428477228,-0.89120736006143542,0.34692944965489897") ==
+          doctest::Approx(16));
+}

@@ -59,7 +59,7 @@ inline PathStyle style_of(const lyr_style& s) {
             s.speed / scale::speed,    s.acceleration / scale::acceleration};
 }
 
-// What the C++ reader gives out for it. `left_mm` of a wipe is taken over: C leaves that to its caller.
+// What the C++ reader gives out for it. `left_mm` of a wipe is taken over: C has the whole way instead.
 inline Operation operation_of(const lyr_reader& r, const lyr_operation& o, const Operation& like) {
     const Point from = point_of(o.from), to = point_of(o.to);
     switch (o.kind) {

@@ -84,6 +84,21 @@ TEST_CASE("C reader 3 and 4: the same verdict on any byte of any payload, with a
     }
 }
 
+TEST_CASE(
+    "C reader 3 and 4: the same verdict on a payload that is cut or goes on, with a right CRC") {
+    const FileBytes file = test::small_file();
+    const std::vector<test::Block> blocks = test::split(file);
+    for (std::size_t i = 1; i < blocks.size(); ++i) {
+        const std::size_t size = blocks[i].payload.size();
+        for (std::size_t other = 0; other < size + 20; ++other) {
+            auto changed = blocks;
+            changed[i].payload.resize(other, static_cast<std::byte>(other % 2 ? 0xff : 0));
+            INFO("block " << i << " of " << other << " bytes");
+            REQUIRE(difference(test::join(file, changed)) == "");
+        }
+    }
+}
+
 TEST_CASE("C reader 3: blocks that are missing, doubled, swapped or of another type") {
     const FileBytes file = test::small_file();
     const auto same = [](const FileBytes& bytes, const auto&) { CHECK(difference(bytes) == ""); };
@@ -194,33 +209,33 @@ TEST_CASE("C reader: it starts at any layer, and goes back") {
     CHECK(c.reader.status == LYR_CUT_SHORT);
 }
 
-TEST_CASE("C reader: a wipe is given out again without touching the source") {
+TEST_CASE("C reader: each piece of a wipe tells the way of all") {
     const FileBytes file = random_file(6);
     test::Memory memory{file};
     test::CReader c(memory);
-    REQUIRE(c.open());
-    int wipes = 0;
+    Result<Reader> reader = test::open_bytes(file, {});
+    REQUIRE((c.open() && reader.ok()));
+    const double mm = reader->header().quantum.mm(1);
+    double left_mm = 0, way = 0;
+    int wipes = 0, arcs = 0;
     while (lyr_next(&c.reader, &c.operation)) {
-        if (c.operation.kind != LYR_WIPE) continue;
-        ++wipes;
-        const std::size_t at = memory.at;
-        const std::uint32_t pieces = c.operation.number;
-        std::vector<std::uint64_t> offsets{c.operation.offset};
-        for (std::uint32_t left = pieces; left > 1; --left) {
-            REQUIRE(lyr_next(&c.reader, &c.operation));
-            CHECK(c.operation.kind == LYR_WIPE);
-            CHECK(c.operation.number == left - 1);
-            offsets.push_back(c.operation.offset);
+        const auto* wipe = std::get_if<Wipe>(reader->read());
+        REQUIRE((wipe != nullptr) == (c.operation.kind == LYR_WIPE));
+        if (!wipe) {
+            left_mm = 0;
+            CHECK(c.operation.way == 0);
+            continue;
         }
-        lyr_wipe_again(&c.reader);
-        for (std::uint32_t i = 0; i < pieces; ++i) {
-            REQUIRE(lyr_next(&c.reader, &c.operation));
-            CHECK(c.operation.number == pieces - i);
-            if (i > 0) CHECK(c.operation.offset == offsets[i]);
-        }
-        CHECK(memory.at == at);
+        const bool begins = wipe->left_mm >= left_mm;
+        wipes += begins;
+        arcs += wipe->sagitta != 0;
+        left_mm = wipe->left_mm;
+        if (begins) way = c.operation.way;
+        if (begins) CHECK(way * mm == doctest::Approx(left_mm).epsilon(1e-9));
+        CHECK(c.operation.way == way);
     }
     CHECK(wipes > 50);
+    CHECK(arcs > 50);
 }
 
 TEST_CASE("C reader: metadata, configuration and thumbnails are handed on") {

@@ -1,9 +1,9 @@
+#include "kernel/contour/arc.h"
+
 #include <doctest/doctest.h>
 
 #include <numbers>
 #include <random>
-
-#include "kernel/contour/arc.h"
 
 using namespace lyr;
 
@@ -88,4 +88,24 @@ TEST_CASE("arc 2: nothing jumps where an arc becomes a line") {
     CHECK((start_tangent(start, flat) - start_tangent(start, line)).norm() < 1e-12);
     CHECK((point_at(start, flat, 0.3) - point_at(start, line, 0.3)).norm() < 1e-12);
     CHECK(std::abs(distance_mm(start, flat, {0, 0}) - distance_mm(start, line, {0, 0})) < 1e-12);
+}
+
+TEST_CASE("arc: length, sweep and area of flat and bent arcs are those of long double") {
+    for (int i = 0; i <= 400; ++i) {
+        // With t = 2 s / c from 0.001 to 10.
+        const double t = std::pow(10.0, i / 100.0 - 3), c = 3;
+        const Point2 start(1, 2);
+        for (const double turn : {1.0, -1.0}) {
+            const Segment arc{start + Vector2(0, c), turn * t * c / 2};
+            const long double x = 2.0L * std::abs(arc.sagitta_mm) / c, q = std::atan(x);
+            const long double w = 1 + x * x;
+            const auto length = static_cast<double>(c * w * q / x);
+            const auto area =
+                static_cast<double>(c * c / (8 * x * x) * (w * w * q - x * (1 - x * x)));
+            CHECK(length_mm(start, arc) == doctest::Approx(length).epsilon(1e-14));
+            CHECK(sweep_rad(start, arc) ==
+                  doctest::Approx(turn * static_cast<double>(4 * q)).epsilon(1e-14));
+            CHECK(enclosed_area_mm2(start, arc) == doctest::Approx(turn * area).epsilon(1e-12));
+        }
+    }
 }

@@ -11,8 +11,8 @@ using namespace lyr::testing;
 
 namespace {
 
-double narrow(const Contours& region, double width_mm) {
-    return narrow_mm2(Boundary(region), width_mm);
+double narrow(const Contours& region, double width_mm, double mitre_limit = 0) {
+    return narrow_mm2(Boundary(region), width_mm, mitre_limit);
 }
 
 // Two plates with a bridge between them.
@@ -44,6 +44,40 @@ TEST_CASE("clearance: a bridge is narrow if the disc is wider, by about its area
         CHECK(lost < 5);
         // What discs from both ends reach is not lost, but for little.
         CHECK(narrow(moved(bridged(1, 0.8), motion), 1.1) < 0.15);
+    }
+}
+
+// Two plates with a waist between them, bounded by arcs of a radius.
+Contours waisted(double wide_mm, double radius_mm) {
+    const double reach = 2, rise = radius_mm - std::sqrt(radius_mm * radius_mm - reach * reach);
+    const double half = wide_mm / 2 + rise;
+    return {Path{{-6, -4},
+                 {{{-reach, -4}},
+                  {{-reach, -half}},
+                  {{reach, -half}, -rise},
+                  {{reach, -4}},
+                  {{6, -4}},
+                  {{6, 4}},
+                  {{reach, 4}},
+                  {{reach, half}},
+                  {{-reach, half}, -rise},
+                  {{-reach, 4}},
+                  {{-6, 4}},
+                  {{-6, -4}}}}};
+}
+
+TEST_CASE("clearance: in a waist, mitred tips reach nearly all that discs do not") {
+    for (int turn = 0; turn < 4; ++turn) {
+        const Motion motion{0.8 * turn, {3, -turn * 2.0}, turn % 2 == 1};
+        const Contours region = moved(waisted(0.9, 2.5), motion);
+        CHECK(narrow(region, 0.89, 5) == 0);
+        const double discs = narrow(region, 1.1), mitred = narrow(region, 1.1, 5);
+        CHECK(mitred > 0);
+        CHECK(mitred < discs / 2);
+        // What an opening with mitres leaves out is estimated from above, but for little.
+        const OffsetRequest in{-0.55, 1e-4, Corner::mitre, 5}, out{0.55, 1e-4, Corner::mitre, 5};
+        const double left = total_area(offset(offset(region, in).contours, out).contours);
+        CHECK(total_area(region) - left < mitred + 0.02);
     }
 }
 
