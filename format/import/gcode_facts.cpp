@@ -57,6 +57,24 @@ void take_comment(std::string_view comment, GcodeFacts& facts) {
     if (quantum_nm >= 1) facts.quantum.nm = static_cast<std::uint32_t>(quantum_nm);
 }
 
+// M486 S0 begins an object or, negative, ends it; M486 A is its name.
+void take_object(std::string_view line, GcodeFacts& facts, std::size_t& current) {
+    const GcodeLine command = gcode_line(line);
+    if (command.command != "M486" || command.rest.empty()) return;
+    const std::string_view value = trimmed(command.rest.substr(1));
+    const char letter = command.rest[0];
+    auto& numbers = facts.object_numbers;
+    if ((letter == 'A' || letter == 'a') && current < numbers.size())
+        facts.objects[current] = escaped(value);
+    if (letter != 'S' && letter != 's') return;
+    current = static_cast<std::size_t>(std::find(numbers.begin(), numbers.end(), value) -
+                                       numbers.begin());
+    const auto number = finite_number(value);
+    if (current < numbers.size() || !number || *number < 0) return;
+    numbers.emplace_back(value);
+    facts.objects.push_back("object " + std::to_string(numbers.size()));
+}
+
 }  // namespace
 
 bool begins_layer(std::string_view comment) {
@@ -74,18 +92,25 @@ std::string_view begun_object(std::string_view line) {
 }
 
 GcodeFacts gcode_facts(std::string_view text) {
-    GcodeFacts facts;
+    GcodeFacts facts, numbered;
+    std::size_t current = 0;
     for_each_line(text, [&](std::string_view line, std::uint32_t) {
         if (const std::string_view object = begun_object(line); !object.empty()) {
             const std::string name = escaped(object);
             if (std::find(facts.objects.begin(), facts.objects.end(), name) == facts.objects.end())
                 facts.objects.push_back(name);
         }
+        take_object(line, numbered, current);
         const std::size_t semicolon = line.find(';');
         if (semicolon != std::string_view::npos)
             take_comment(trimmed(line.substr(semicolon + 1)), facts);
         return true;
     });
+    // A file that names its objects otherwise, too, has them once.
+    if (facts.objects.empty()) {
+        facts.objects = numbered.objects;
+        facts.object_numbers = numbered.object_numbers;
+    }
     return facts;
 }
 

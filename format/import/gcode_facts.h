@@ -15,6 +15,7 @@ namespace lyr::format {
 struct GcodeFacts {
     bool marks_layers = false;  // with comments; otherwise by height
     std::vector<std::string> objects{};
+    std::vector<std::string> object_numbers{};  // of M486 S; each is the object of the same index
     std::string producer{}, source{}, source_sha256{}, printer{}, material{}, profile{};
     double filament_diameter_mm = 0, filament_density_g_cm3 = 0;  // 0: not stated
     Quantum quantum{};

@@ -72,6 +72,13 @@ private:
 Result<FileTotals> import_gcode(std::string_view text, const std::string& name,
                                 const std::string& source_name, const std::string& lyr_path,
                                 const GcodeImportOptions& options, Diagnostics& diagnostics) {
+    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF", binary = "GCDE";
+    if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
+    if (text.starts_with(binary))
+        return Diagnostic{Severity::error,
+                          ExitStatus::unsupported,
+                          "this is binary G-code; slicers write it as text, too",
+                          {.file = name}};
     const GcodeFacts facts = gcode_facts(text);
     const Metadata metadata = metadata_of(facts, source_name, options);
     auto writer = Writer::create(lyr_path, facts.quantum, metadata);
@@ -99,7 +106,7 @@ Result<FileTotals> import_gcode(std::string_view text, const std::string& name,
     });
     const bool is_layer = marked || interpreter.layer().extrudes;
     if (!error && is_layer) keep(layers.add(interpreter.take_layer()));
-    if (!error && layers.empty())
+    if (!error && !interpreter.extrudes())
         error = Diagnostic{
             Severity::error, ExitStatus::input, "nothing in it extrudes", {.file = name}};
     if (!error) keep(layers.finish());
@@ -112,6 +119,12 @@ Result<FileTotals> import_gcode(std::string_view text, const std::string& name,
                                    shortest(std::round(layers.lost_filament_mm() * 100) / 100) +
                                    " mm of filament",
                                {.file = name}});
+    if (layers.left_out())
+        diagnostics.push_back(
+            {Severity::warning,
+             ExitStatus::input,
+             "more than 16 heaters or 8 fans: a layer's start does not set all of them",
+             {.file = name}});
     if (layers.speeds_differ())
         diagnostics.push_back({Severity::note,
                                ExitStatus::ok,

@@ -28,31 +28,77 @@ constexpr double farthest_mm = 10'000;
 constexpr double same_center_mm = 0.0005;
 constexpr double whole_turn_rad = 2 * std::numbers::pi;
 
-// They tell people, wait, or set what a print's file does not know: nothing is lost.
-constexpr std::array<std::string_view, 24> meaningless{"M73",
-                                                       "M17",
-                                                       "M18",
-                                                       "M84",
-                                                       "M105",
-                                                       "M110",
-                                                       "M114",
-                                                       "M115",
-                                                       "M117",
-                                                       "M118",
-                                                       "M201",
-                                                       "M203",
-                                                       "M205",
-                                                       "M220",
-                                                       "M221",
-                                                       "M400",
-                                                       "M486",
-                                                       "M555",
-                                                       "M862.1",
-                                                       "M862.3",
-                                                       "M900",
-                                                       "M107.1",
-                                                       "EXCLUDE_OBJECT_DEFINE",
-                                                       "EXCLUDE_OBJECT_END"};
+// Of M220 and M221: more is a mistake; none of it would stop the machine.
+constexpr double full_percent = 100, most_percent = 1000;
+// Between the radii of an arc's ends. Three digits leave 0.003 mm, two of some programs 0.03; ArcWelder fits within 0.05.
+constexpr double same_radius_mm = 0.05;
+
+// Commands without which a print is the same.
+struct Passed {
+    std::string_view command, reason;
+};
+constexpr std::array passed{
+    Passed{"M17", "motors on"},
+    Passed{"M18", "motors off"},
+    Passed{"M84", "motors off"},
+    Passed{"M73", "tells people"},
+    Passed{"M105", "asks"},
+    Passed{"M114", "asks"},
+    Passed{"M115", "asks"},
+    Passed{"M117", "tells people"},
+    Passed{"M118", "tells people"},
+    Passed{"M110", "numbers of lines"},
+    Passed{"M201", "limits of the machine"},
+    Passed{"M203", "limits of the machine"},
+    Passed{"M205", "limits of the machine"},
+    Passed{"M400", "waits for the motions before"},
+    Passed{"M555", "where the print is, for probing"},
+    Passed{"M862.1", "checks the machine"},
+    Passed{"M862.3", "checks the machine"},
+    Passed{"M900", "the machine's own pressure advance"},
+    Passed{"M107.1", "a fan beside the print"},
+    Passed{"EXCLUDE_OBJECT_DEFINE", "names come with EXCLUDE_OBJECT_START"}};
+
+// Motions, or what would make others of those that follow.
+struct Refused {
+    std::string_view command, reason;
+};
+constexpr std::array refused{Refused{"G5", "a spline"},
+                             Refused{"G5.1", "a spline"},
+                             Refused{"G6", "steps of the motors"},
+                             Refused{"G18", "arcs lie in the plane of x and y"},
+                             Refused{"G19", "arcs lie in the plane of x and y"},
+                             Refused{"G42", "a motion to a point of the machine's mesh"},
+                             Refused{"G51", "scaled motions"},
+                             Refused{"G53", "positions of the machine"},
+                             Refused{"G61", "a motion to a place that was kept"},
+                             Refused{"G68", "turned motions"},
+                             Refused{"G81", "a cycle of drilling"},
+                             Refused{"G82", "a cycle of drilling"},
+                             Refused{"G83", "a cycle of drilling"},
+                             Refused{"G90.1", "centres of arcs are relative"},
+                             Refused{"G93", "speeds by time"},
+                             Refused{"M98", "another file's lines"},
+                             Refused{"M808", "lines that are repeated"},
+                             Refused{"FORCE_MOVE", "a motion of a motor"}};
+
+const Refused* refusal(std::string_view name) {
+    const auto* found = std::find_if(refused.begin(), refused.end(),
+                                     [&](const Refused& one) { return one.command == name; });
+    return found == refused.end() ? nullptr : found;
+}
+
+bool is_passed(std::string_view name) {
+    return std::any_of(passed.begin(), passed.end(),
+                       [&](const Passed& one) { return one.command == name; });
+}
+
+// "X20 E1" after a G1, as some programs write: machines differ in what they do with it.
+bool is_word(std::string_view command) {
+    constexpr std::string_view letters = "ABCEFIJKRUVWXYZ";
+    return letters.find(command[0]) != std::string_view::npos &&
+           (command.size() == 1 || (command[1] >= '0' && command[1] <= '9'));
+}
 
 bool is_one_of(std::string_view text, std::initializer_list<std::string_view> some) {
     return std::find(some.begin(), some.end(), text) != some.end();
@@ -109,6 +155,14 @@ void GcodeInterpreter::add_object(std::string_view name) {
     append(Object{static_cast<std::uint32_t>(found - facts_.objects.begin()) + 1});
 }
 
+void GcodeInterpreter::take_object_number(std::string_view rest) {
+    if (!rest.starts_with('S') && !rest.starts_with('s')) return;  // names and counts are facts
+    const auto& numbers = facts_.object_numbers;
+    const auto found = std::find(numbers.begin(), numbers.end(), trimmed(rest.substr(1)));
+    append(Object{
+        found == numbers.end() ? 0 : static_cast<std::uint32_t>(found - numbers.begin()) + 1});
+}
+
 void GcodeInterpreter::take_comment(std::string_view comment) {
     const auto value = [&](std::string_view key) -> std::optional<std::string_view> {
         if (!comment.starts_with(key)) return std::nullopt;
@@ -138,26 +192,50 @@ Status GcodeInterpreter::command(const GcodeLine& line) {
     const std::string& name = line.command;
     const bool is_moving = is_one_of(name, {"G0", "G1", "G2", "G3"});
     const bool has_words = name.size() > 1 && name[1] >= '0' && name[1] <= '9' &&
-                           !is_one_of(name, {"M117", "M118", "M23", "M28", "M486"});
+                           !is_one_of(name, {"M23", "M28", "M486"});
     if (!std::isalpha(static_cast<unsigned char>(name[0])))
         return error("expected a command, found " + in_quotes(name));
+    if (is_passed(name)) return Done{};
+    if (is_word(name)) return error("expected a command, found the word " + in_quotes(name));
+    if (const Refused* why = refusal(name))
+        return Diagnostic{Severity::error,
+                          ExitStatus::unsupported,
+                          name + " is not handled: " + std::string(why->reason),
+                          {.file = name_, .line = line_}};
     std::string why;
     const auto words = has_words ? gcode_words(line.rest, !is_moving, why) : GcodeWords();
     if (!words) return error(why);
+    if ((*words)['G'] || (*words)['M']) return error("expected one command a line, found two");
+    if (is_moving)
+        for (const char axis : {'A', 'B', 'C', 'U', 'V', 'W'})
+            if ((*words)[axis]) unknown(std::string("the axis ") + axis);
     if (name == "G0" || name == "G1") return move(*words);
     if (name == "G2" || name == "G3") return turn(*words, name == "G3");
-    if (is_one_of(name, {"G18", "G19", "G90.1"}))
-        return Diagnostic{Severity::error,
-                          ExitStatus::unsupported,
-                          name + ": arcs lie in the plane of x and y, their centres are relative",
-                          {.file = name_, .line = line_}};
+    if (name == "M220" || name == "M221") return set_factor(name, *words);
     if (name == "G28") {
         home(*words);
     } else if (name == "G92") {
         set_position(*words);
-    } else if (!set_mode(name) && !set_machine(line, *words) && !heat(name, *words) &&
-               std::find(meaningless.begin(), meaningless.end(), name) == meaningless.end()) {
+    } else if (!set_mode(name) && !set_machine(line, *words) && !heat(name, *words)) {
         unknown(name);
+    }
+    return Done{};
+}
+
+// Percents of speed, of which Marlin keeps one (B) and takes it back (R), and of filament.
+Status GcodeInterpreter::set_factor(const std::string& command, const GcodeWords& words) {
+    if (words['S'] && !(*words['S'] > 0 && *words['S'] <= most_percent))
+        return error("expected S from more than 0 to 1000 % behind " + command + ", found " +
+                     shortest(*words['S']));
+    if (command == "M220") {
+        if (words['B']) kept_speed_ = speed_;
+        if (words['S'])
+            speed_ = *words['S'] / full_percent;
+        else if (words['R'])
+            speed_ = kept_speed_;
+    } else if (words['S']) {
+        flows_[words['T'] && !facts_.is_klippers ? whole(words['T']) : tool_] =
+            *words['S'] / full_percent;
     }
     return Done{};
 }
@@ -207,6 +285,11 @@ bool GcodeInterpreter::set_machine(const GcodeLine& line, const GcodeWords& word
         if (limit && *limit > 0) print_mm_s2_ = travel_mm_s2_ = *limit;
     } else if (is_tool(name)) {
         append(Tool{whole(finite_number(name.substr(1)))});
+        if (!facts_.is_klippers) tool_ = whole(finite_number(name.substr(1)));
+    } else if (name == "M486") {
+        take_object_number(line.rest);
+    } else if (name == "EXCLUDE_OBJECT_END") {
+        append(Object{0});
     } else {
         return false;
     }
@@ -214,6 +297,10 @@ bool GcodeInterpreter::set_machine(const GcodeLine& line, const GcodeWords& word
 }
 
 bool GcodeInterpreter::heat(const std::string& name, const GcodeWords& words) {
+    // As Marlin: without a temperature nothing is set.
+    if (is_one_of(name, {"M104", "M109", "M140", "M190", "M141", "M191"}) && !words['S'] &&
+        !words['R'])
+        return true;
     const double value = std::max(0.0, words['S'] ? *words['S'] : words['R'].value_or(0));
     const std::uint32_t tool = whole(words['T']);
     if (name == "M104" || name == "M109")
@@ -245,7 +332,7 @@ double GcodeInterpreter::filament(const GcodeWords& words) {
     const double value = *words['E'] * unit_mm_;
     const double pushed = absolute_filament_ ? value - filament_ : value;
     filament_ = absolute_filament_ ? value : filament_ + value;
-    return pushed;
+    return pushed * flows_[tool_];
 }
 
 void GcodeInterpreter::take_speed(const GcodeWords& words) {
@@ -265,6 +352,7 @@ Status GcodeInterpreter::move(const GcodeWords& words) {
 }
 
 Status GcodeInterpreter::turn(const GcodeWords& words, bool counter_clockwise) {
+    if (words['P'].value_or(0) != 0) return error("an arc of several turns (P)");
     take_speed(words);
     GcodeGo arc{.from = at_, .to = target(words)};
     const double dx = arc.to.x - at_.x, dy = arc.to.y - at_.y, chord = std::hypot(dx, dy);
@@ -283,6 +371,11 @@ Status GcodeInterpreter::turn(const GcodeWords& words, bool counter_clockwise) {
     if (i == 0 && j == 0) return error("an arc needs I, J or R");
     arc.center_x = at_.x + i;
     arc.center_y = at_.y + j;
+    const double end_radius_mm = std::hypot(arc.to.x - arc.center_x, arc.to.y - arc.center_y);
+    if (std::abs(std::hypot(i, j) - end_radius_mm) > same_radius_mm)
+        return error("an arc's ends are " +
+                     formatted("%.3f and %.3f", std::hypot(i, j), end_radius_mm) +
+                     " mm from its centre");
     for (const double value : {arc.to.x, arc.to.y, arc.to.z, arc.center_x, arc.center_y})
         if (!(std::abs(value) <= farthest_mm)) return error("a position of more than 10 m");
     const double begin = std::atan2(-j, -i);
@@ -320,7 +413,7 @@ void GcodeInterpreter::go(GcodeGo go, const GcodeWords& words) {
     go.filament_mm = filament(words);
     if (go.wipes()) drawn_back_mm_ -= go.filament_mm;
     go.drawn_back_mm = drawn_back_mm_;
-    go.speed_mm_s = speed_mm_s_;
+    go.speed_mm_s = speed_mm_s_ * speed_;
     go.acceleration_mm_s2 = go.extrudes() ? print_mm_s2_ : travel_mm_s2_;
     go.role = role_;
     go.width_mm = width_mm_;
@@ -328,6 +421,7 @@ void GcodeInterpreter::go(GcodeGo go, const GcodeWords& words) {
     go.line = line_;
     at_ = go.to;
     layer_.extrudes = layer_.extrudes || go.extrudes();
+    extrudes_ = extrudes_ || go.extrudes();
     if (!joins(go)) layer_.items.emplace_back(go);
 }
 
@@ -336,7 +430,7 @@ void GcodeInterpreter::draw(double filament_mm) {
     const double depth_mm = drawn_back_mm_ - filament_mm;
     if (depth_mm < 0) push_aside(-depth_mm);
     drawn_back_mm_ = depth_mm < least_depth_mm ? 0 : depth_mm;
-    layer_.items.emplace_back(GcodeDraw{drawn_back_mm_, speed_mm_s_});
+    layer_.items.emplace_back(GcodeDraw{drawn_back_mm_, speed_mm_s_ * speed_});
 }
 
 void GcodeInterpreter::push_aside(double filament_mm) {

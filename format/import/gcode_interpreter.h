@@ -31,6 +31,8 @@ public:
     // The same, where what came before goes on.
     void begin_layer() { height_is_layers_ = true; }
 
+    // Whether anything has been extruded by a motion.
+    bool extrudes() const { return extrudes_; }
     // What was passed over, when all is read.
     void report(Diagnostics& diagnostics) const;
 
@@ -45,6 +47,7 @@ private:
     void take_comment(std::string_view comment);
     void take_height(std::string_view value);
     Status command(const GcodeLine& line);
+    Status set_factor(const std::string& command, const GcodeWords& words);
     // False: not known.
     bool set_mode(const std::string& command);
     bool set_machine(const GcodeLine& line, const GcodeWords& words);
@@ -60,6 +63,7 @@ private:
     GcodePoint target(const GcodeWords& words) const;
     double filament(const GcodeWords& words);
     void add_object(std::string_view name);
+    void take_object_number(std::string_view rest);
     void append(const Operation& operation) { layer_.items.emplace_back(operation); }
     void unknown(const std::string& command);
     bool joins(const GcodeGo& half);
@@ -68,12 +72,17 @@ private:
     const GcodeFacts& facts_;
     GcodeLayer layer_{};
     std::uint32_t line_ = 0;
+    bool extrudes_ = false;
 
     GcodePoint at_{}, offset_{};  // physical; what is written is at_ + offset_
     double unit_mm_ = 1;
     bool absolute_ = true, absolute_filament_ = true;
     double filament_ = 0;  // E as the file counts it, mm
     double drawn_back_mm_ = 0, speed_mm_s_ = 0;
+    double speed_ = 1, kept_speed_ = 1;  // M220
+    // M221, by tool; Klipper's is one for all.
+    std::vector<double> flows_ = std::vector<double>(256, 1.0);
+    std::uint32_t tool_ = 0;
     double print_mm_s2_ = 0, travel_mm_s2_ = 0;
     double firmware_depth_mm_ = 0, firmware_mm_s_ = 0;
     Role role_ = Role::other;

@@ -71,7 +71,7 @@ void GcodeLayers::set(const Operation& operation) {
             }
             targets.push_back(target);
         }
-        if (!known) targets.push_back({heat->heater, heat->target_c});
+        if (!known && !targets.push_back({heat->heater, heat->target_c})) left_out_ = true;
         machine_.temperatures = targets;
     } else if (const auto* fan = std::get_if<Fan>(&operation)) {
         const auto known = std::find_if(machine_.fans.begin(), machine_.fans.end(),
@@ -187,7 +187,7 @@ GcodeLayers::Begun GcodeLayers::begin(GcodeLayer layer) {
     state.retract_speed_mm_s = machine_.retract_mm_s;
     state.unretract_speed_mm_s = machine_.unretract_mm_s;
     state.temperatures = machine_.temperatures;
-    for (const Fan& fan : machine_.fans) state.fans.push_back(fan);
+    for (const Fan& fan : machine_.fans) left_out_ = !state.fans.push_back(fan) || left_out_;
     begun.travel_mm_s = state.travel_speed_mm_s;
     begun.travel_mm_s2 = state.travel_acceleration_mm_s2;
     begun.at = {state.start_x_mm, state.start_y_mm, z_mm};
@@ -231,7 +231,6 @@ Status GcodeLayers::write(Begun layer) {
     }
     auto encoded = encoder.finish();
     if (!encoded) return encoded.error();
-    ++count_;
     return writer_.append(*encoded);
 }
 

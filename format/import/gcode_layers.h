@@ -26,7 +26,8 @@ public:
     double lost_filament_mm() const { return lost_filament_mm_; }
     // Retractions of one layer, of which a print has one speed, do.
     bool speeds_differ() const { return speeds_differ_; }
-    bool empty() const { return count_ == 0 && !waits_; }
+    // A heater or a fan that a layer's state has no room for.
+    bool left_out() const { return left_out_; }
 
 private:
     // What the machine is set to.
@@ -64,10 +65,9 @@ private:
     double filament_area_mm2_;
     Machine machine_{};
     std::optional<Begun> waits_{};
-    std::uint32_t count_ = 0;
     double below_z_mm_ = 0;
     double lost_filament_mm_ = 0;
-    bool speeds_differ_ = false;
+    bool speeds_differ_ = false, left_out_ = false;
     std::vector<WipePiece> wipe_{};
     double wipe_depth_mm_ = 0;
     bool wiped_ = false;  // and not travelled since

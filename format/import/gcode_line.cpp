@@ -55,8 +55,15 @@ GcodeLine gcode_line(std::string_view text) {
     const std::size_t semicolon = text.find(';');
     if (semicolon != std::string_view::npos) line.comment = trimmed(text.substr(semicolon + 1));
     text = trimmed(text.substr(0, semicolon));
-    if (text.size() > 1 && upper(text[0]) == 'N' && is_digit(text[1])) text = behind_number(text);
-    if (text.empty() || text[0] == '(' || text[0] == '%') return line;
+    for (;;) {
+        if (text.starts_with('('))
+            text = trimmed(text.substr(std::min(text.find(')'), text.size() - 1) + 1));
+        else if (text.size() > 1 && upper(text[0]) == 'N' && is_digit(text[1]))
+            text = behind_number(text);
+        else
+            break;
+    }
+    if (text.empty() || text == "%") return line;
     if (!is_letter(text[0])) {
         line.command = text.substr(0, text.find(' '));
         return line;

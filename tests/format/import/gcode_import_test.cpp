@@ -273,6 +273,99 @@ TEST_CASE("gcode import 5: a line that is none is an error with its number") {
     CHECK(refused("G28\nG1 X10\n").message.find("nothing in it extrudes") != std::string::npos);
 }
 
+TEST_CASE("gcode import: M221 and M220 change what follows, E drawn back as well") {
+    const Imported less = imported(begin + "M221 S95\nG1 X20 F6000 E1\nM221 S100\nG1 X30 E1\n");
+    CHECK(less.volume_mm3() == doctest::Approx(1.95 * filament_mm2).epsilon(0.001));
+    const Imported counted =
+        imported(begin + "M82\nM221 S50\nG1 X20 E1\nG1 E0\nG0 X25\nG1 E1\nG1 X30 E2\n");
+    CHECK(counted.volume_mm3() == doctest::Approx(filament_mm2).epsilon(0.001));
+    CHECK(counted.all<Retract>().at(0).depth_mm == doctest::Approx(0.5));
+    // Of a tool; of all of Klipper's.
+    const std::string tools = begin + "M221 S50\nT1\nG1 X20 E1\n";
+    CHECK(imported(tools).volume_mm3() == doctest::Approx(filament_mm2).epsilon(0.001));
+    CHECK(imported(tools + "; gcode_flavor = klipper\n").volume_mm3() ==
+          doctest::Approx(filament_mm2 / 2).epsilon(0.001));
+    std::vector<double> speeds;
+    for (const auto& given : imported(begin + "M220 S200\nG1 X20 F600 E1\nM220 B\nM220 S50\n"
+                                              "G1 X30 E1\nM220 R\nG1 X40 E1\n")
+                                 .operations)
+        if (std::holds_alternative<Line>(given.operation)) speeds.push_back(given.style.speed_mm_s);
+    CHECK(speeds == std::vector<double>{20, 5, 20});
+    for (const char* text : {"M220 S0", "M221 S-5", "M221 S100000", "M220 Sfast"})
+        CHECK(refused(begin + text + "\nG1 X20 E1").where.line == 10);
+}
+
+TEST_CASE("gcode import: layers in which nothing extrudes are no print") {
+    for (const char* text :
+         {";LAYER_CHANGE\nG1 X10 F100\n", ";LAYER_CHANGE\nG1 X10 A1\n;LAYER_CHANGE\nG1 X20 A2\n",
+          ";LAYER:0\nG1 E5\nG1 E-1\n"}) {
+        const Diagnostic error = refused(text);
+        CHECK(error.status == ExitStatus::input);
+        CHECK(error.message == "nothing in it extrudes");
+    }
+    const Imported axis = imported(begin + "G1 X20 A1 E1\n");
+    REQUIRE(axis.diagnostics.size() == 1);
+    CHECK(axis.diagnostics[0].message.find("the axis A") != std::string::npos);
+}
+
+TEST_CASE("gcode import: no motion is dropped without an error") {
+    check_line(only_line(begin + "(go) N5 (on) G1 X20" + ten_mm), 20, 20, 0.2);
+    for (const char* text :
+         {"X20 E1", "X-20 E1", "F300", "G53 G1 X20 E1", "G5 X20 Y20 I1 J1 P1 Q1 E1", "G90 G1 X20",
+          "G2 X20 Y20 I5 P3 E1", "G81 X20 Z1", "G51 X2", "%G1 X20 E1"}) {
+        CAPTURE(std::string(text));
+        const Diagnostic error = refused(begin + text + "\nG1 X20" + ten_mm);
+        CHECK(error.where.line == 10);
+    }
+}
+
+TEST_CASE("gcode import: objects end where the file says, and M486 begins them") {
+    const auto objects = [](const Imported& print) {
+        std::vector<std::uint32_t> all{print.layers.at(0).state.object};
+        for (const Object& one : print.all<Object>()) all.push_back(one.object);
+        return all;
+    };
+    const Imported klipper = imported("EXCLUDE_OBJECT_START NAME=a\n" + begin +
+                                      "G1 X20 E1\nEXCLUDE_OBJECT_END\n" + "G1 X30 E1\n");
+    CHECK(objects(klipper) == std::vector<std::uint32_t>{1, 0});
+    const Imported marlin = imported("M486 T2\nM486 S0\nM486 Aleft one\n" + begin +
+                                     "G1 X20 E1\nM486 S4\nG1 X30 E1\nM486 S-1\nG1 X40 E1\n");
+    CHECK(objects(marlin) == std::vector<std::uint32_t>{1, 2, 0});
+    CHECK(marlin.header.metadata.objects == std::vector<std::string>{"left one", "object 2"});
+    CHECK(marlin.diagnostics.empty());
+}
+
+TEST_CASE("gcode import: heating without a temperature sets none, as Marlin") {
+    const Imported print = imported("M104 S200\nM140 S60\nM104 T0\nM190\nM109\n" + begin +
+                                    "G1 X20 E1\nM140\nM104\nG1 X30 E1\n");
+    REQUIRE(print.layers[0].state.temperatures.size() == 2);
+    CHECK(print.layers[0].state.temperatures[0].target_c == 200);
+    CHECK(print.layers[0].state.temperatures[1].target_c == 60);
+    CHECK(print.all<Temperature>().empty());
+}
+
+TEST_CASE("gcode import: an arc's ends are as far from its centre, but for rounding") {
+    CHECK(refused(begin + "G2 X20 Y20 I2 J0 E1").message.find("2.000 and 8.000") !=
+          std::string::npos);
+    CHECK(imported(begin + "G2 X20.03 Y20 I5 J0 E1").all<Arc>().size() == 1);
+}
+
+TEST_CASE("gcode import: more heaters and fans than a layer starts with are told of") {
+    std::string heaters, fans;
+    for (int i = 0; i < 17; ++i) heaters += "M104 S200 T" + std::to_string(i) + "\n";
+    for (int i = 0; i < 9; ++i) fans += "M106 S200 P" + std::to_string(i) + "\n";
+    for (const std::string& text : {heaters, fans}) {
+        const Imported print = imported(text + begin + "G1 X20 E1\n");
+        REQUIRE(print.diagnostics.size() == 1);
+        CHECK(print.diagnostics[0].message.find("16 heaters or 8 fans") != std::string::npos);
+    }
+}
+
+TEST_CASE("gcode import: a byte order mark is skipped, binary G-code named") {
+    check_line(only_line("\xEF\xBB\xBF" + begin + "G1 X20" + ten_mm), 20, 20, 0.2);
+    CHECK(refused("GCDE\x01\x00").message.find("binary G-code") != std::string::npos);
+}
+
 TEST_CASE("gcode import 5: whatever the bytes, it ends with a print or an error") {
     std::mt19937 random(11);
     const std::string whole =
