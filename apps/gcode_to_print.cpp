@@ -1,7 +1,6 @@
 #include "apps/gcode_to_print.h"
 
 #include <filesystem>
-#include <limits>
 
 #include "apps/files.h"
 #include "base/read_text.h"
@@ -12,7 +11,7 @@ namespace lyr::command_line {
 
 Result<std::string> gcode_to_print(const std::string& gcode_path, const std::string& lyr_path,
                                    double filament_diameter_mm, Diagnostics& diagnostics) {
-    const auto text = read_text(gcode_path, std::numeric_limits<std::size_t>::max());
+    const auto text = read_text(gcode_path, most_readable_bytes(gcode_path));
     if (!text) return text.error();
     const std::string name = input_name(gcode_path);
     const std::string source =

@@ -16,15 +16,20 @@
 namespace lyr::command_line {
 namespace {
 
-// A print of a year is smaller.
-constexpr std::size_t most_bytes = std::size_t{1} << 36;
-
 std::span<const std::byte> bytes_of(const std::string& text) {
     return std::as_bytes(std::span(text.data(), text.size()));
 }
 
+Result<std::string> read_print(const std::string& path) {
+    const auto wrong = [](std::string_view head) -> std::optional<std::string> {
+        const bool fits = head.empty() || format::is_print(std::as_bytes(std::span(head)));
+        return fits ? std::nullopt : std::optional<std::string>(format::no_print);
+    };
+    return read_text(path, most_readable_bytes(path), {format::print_head_bytes, wrong});
+}
+
 Status verify_print(const std::string& path) {
-    const auto file = read_text(path, most_bytes);
+    const auto file = read_print(path);
     if (!file) return file.error();
     const format::Verification verification = format::verify(bytes_of(*file));
     const std::string name = input_name(path);
@@ -34,7 +39,7 @@ Status verify_print(const std::string& path) {
 }
 
 Status repair_print(const std::string& path, const std::string& output) {
-    const auto file = read_text(path, most_bytes);
+    const auto file = read_print(path);
     if (!file) return file.error();
     const std::string name = input_name(path);
     const format::Verification verification = format::verify(bytes_of(*file));

@@ -28,7 +28,10 @@ bool Reader::Implementation::open() {
     for (;;) {
         const std::optional<BlockHead> head = blocks_.head();
         if (!head) return fail_fault(blocks_.offset());
-        if (is(*head, BlockType::layer) || is(*head, BlockType::index)) return true;
+        if (is(*head, BlockType::layer) || is(*head, BlockType::index)) {
+            first_layer_offset_ = head->offset;
+            return true;
+        }
         if (!read_extra(*head)) return false;
     }
 }

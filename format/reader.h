@@ -87,8 +87,9 @@ public:
     ReadPosition position() const;
 
     // The next operation will be LayerStart of this layer (from 0). In a file it goes there by the
-    // index, which must be whole; the end is then checked without counts and index. In a pipe it
-    // reads on to the layer, which must not have begun. Errors: input, and the reader stays at it.
+    // index, which must be whole; the end is then checked without counts and index. A file that is
+    // cut short, without an end block, it reads from the first layer on. In a pipe it reads on to
+    // the layer, which must not have begun. Errors: input, and the reader stays at it.
     Status seek_layer(std::uint32_t index);
 
 private:

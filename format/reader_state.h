@@ -66,7 +66,7 @@ private:
     bool layer_is_whole(const BlockHead& head);
     std::optional<std::span<const std::byte>> payload(const BlockHead& head);
     bool read_on_to_layer(std::uint32_t index);
-    bool fail_cut_short(std::uint64_t offset);
+    bool read_from_start(std::uint32_t index);
     bool fail_no_layer(std::uint32_t index, std::uint32_t layers);
     std::optional<std::uint64_t> find_layer(std::uint32_t index, std::uint64_t file_bytes);
     bool find_index(std::uint64_t file_bytes, BlockHead& head, std::uint32_t& layers);
@@ -90,7 +90,7 @@ private:
     std::uint32_t layer_chunks_ = 0;
     std::uint64_t layer_operations_ = 0, chunks_ = 0, operations_ = 0;
     std::uint32_t offsets_crc_ = 0;  // over the layers' offsets as the index has them
-    std::uint64_t index_offset_ = 0;
+    std::uint64_t index_offset_ = 0, first_layer_offset_ = 0;
 };
 
 }  // namespace lyr::format

@@ -1,18 +1,19 @@
-// Goes to a layer: from the end block at the file's end to the index, and from there to the layer.
+// Goes to a layer: from the end block at the file's end to the index, and from there to the layer. A file that is cut
+// short has neither, and is read from its first layer on.
 
 #include "format/reader_state.h"
 
 namespace lyr::format {
 
+// Without a fault, the file has no end block.
 bool Reader::Implementation::find_index(std::uint64_t file_bytes, BlockHead& head,
                                         std::uint32_t& layers) {
     constexpr std::size_t end_bytes = block_frame_bytes + end_payload_bytes;
-    if (file_bytes < end_bytes || !blocks_.seek(file_bytes - end_bytes))
-        return fail_cut_short(file_bytes);
+    if (file_bytes < end_bytes) return false;
+    if (!blocks_.seek(file_bytes - end_bytes)) return fail_fault(blocks_.offset());
     const std::optional<BlockHead> end = blocks_.head();
     if (!end) return fail_fault(blocks_.offset());
-    if (!is(*end, BlockType::end) || end->length != end_payload_bytes)
-        return fail_cut_short(end->offset);
+    if (!is(*end, BlockType::end) || end->length != end_payload_bytes) return false;
     const auto bytes = payload(*end);
     if (!bytes) return false;
     layers = get_u32(bytes->data());
@@ -23,11 +24,6 @@ bool Reader::Implementation::find_index(std::uint64_t file_bytes, BlockHead& hea
         return fail("the file has no index", index->offset);
     head = *index;
     return true;
-}
-
-bool Reader::Implementation::fail_cut_short(std::uint64_t offset) {
-    return fail("the file is cut short (lyrview --info tells how far it is whole): no end block",
-                offset);
 }
 
 std::optional<std::uint64_t> Reader::Implementation::find_layer(std::uint32_t index,
@@ -66,13 +62,23 @@ bool Reader::Implementation::seek_layer(std::uint32_t index) {
     layers_ = index;
     whole_layers_ = 0;
     const std::optional<std::uint64_t> offset = find_layer(index, *size);
-    if (!offset) return false;
+    if (!offset) return error_ ? false : read_from_start(index);
     if (!blocks_.seek(*offset)) return fail_fault(*offset);
     const std::optional<BlockHead> head = blocks_.head();
     if (!head) return fail_fault(blocks_.offset());
     if (!is(*head, BlockType::layer))
         return fail("the index does not lead to a layer", head->offset);
     return read_layer(*head);
+}
+
+// As far as a file that is cut short goes.
+bool Reader::Implementation::read_from_start(std::uint32_t index) {
+    sought_ = false;
+    layers_ = 0;
+    chunks_ = operations_ = 0;
+    offsets_crc_ = 0;
+    if (!blocks_.seek(first_layer_offset_)) return fail_fault(first_layer_offset_);
+    return read_on_to_layer(index);
 }
 
 bool Reader::Implementation::read_on_to_layer(std::uint32_t index) {

@@ -2,6 +2,7 @@
 
 #include "format/check/repair.h"
 
+#include "base/replace_file.h"
 #include "base/text.h"
 #include "format/metadata_text.h"
 
@@ -55,6 +56,19 @@ std::string kept_layers(const Verification& verification) {
     return text;
 }
 
+// Of a whole file.
+Result<Repaired> copied(std::span<const std::byte> file, const Verification& verification,
+                        const std::string& output) {
+    auto copy = ReplaceFile::open(output);
+    if (!copy) return copy.error();
+    copy->write(file);
+    if (const Status committed = copy->commit(); !committed) return committed.error();
+    Repaired out;
+    out.totals = {static_cast<std::uint32_t>(verification.layers.size()), verification.chunks,
+                  verification.operations, verification.bytes, verification.summary};
+    return out;
+}
+
 }  // namespace
 
 Result<Repaired> repair(std::span<const std::byte> file, const Verification& verification,
@@ -62,8 +76,9 @@ Result<Repaired> repair(std::span<const std::byte> file, const Verification& ver
     const auto refuse = [&](const std::string& why) {
         return Diagnostic{Severity::error, ExitStatus::input, why, {.file = name}};
     };
+    if (verification.findings.empty()) return copied(file, verification, output);
     if (!verification.quantum) {
-        const bool other = !verification.findings.empty() && verification.blocks == 0;
+        const bool other = verification.blocks == 0;
         return refuse(
             other ? verification.findings.front().what
                   : "the prologue is damaged: without the unit of its coordinates the print "
@@ -72,7 +87,7 @@ Result<Repaired> repair(std::span<const std::byte> file, const Verification& ver
     if (verification.whole_from_start == 0)
         return refuse("no layer from the bed on is whole: there is nothing to keep");
     Repaired out;
-    if (!verification.findings.empty()) out.notes.push_back(kept_layers(verification));
+    out.notes.push_back(kept_layers(verification));
     auto writer = Writer::create(output, *verification.quantum, writable(verification, out.notes));
     if (!writer) return writer.error();
     for (std::size_t i = 0; i < verification.whole_from_start; ++i)

@@ -4,7 +4,7 @@
 //  1. No layer behind the first damage is kept, even if it is whole: over a gap a print fails in the air.
 //  2. What is kept is kept byte for byte: operations and states of layers. Index, counts, and the figures
 //     of the metadata (layers, box, volume, filament, mass, time) are those of what is kept.
-//  3. A whole file of this version comes out as it is.
+//  3. A whole file comes out as it is, byte for byte.
 //  4. What is left out is said, in `notes`: layers, metadata that was damaged, blocks nobody knows.
 
 #pragma once

@@ -93,8 +93,7 @@ private:
         const bool named = std::memcmp(head.data(), magic.data(), compared) == 0;
         const auto stop = [&](const char* what) { return find(0, head.size(), what), false; };
         if (head.empty()) return stop("the file is empty");
-        if (!named && !begins_behind_prologue())
-            return stop("this is not a .lyr file: it does not begin with LYR and the byte 1a");
+        if (!is_print(file_)) return stop(no_print);
         out_.cut_short = head.size() < prologue_bytes;
         if (out_.cut_short) return stop("the file is cut short within its prologue");
         if (!named || crc32c(head.first(12)) != get_u32(head.data() + 12)) {
@@ -114,13 +113,6 @@ private:
         else
             find(0, prologue_bytes, "the quantum is out of range");
         return true;
-    }
-
-    // Then it is a .lyr file, whatever its first bytes are.
-    bool begins_behind_prologue() const {
-        if (file_.size() <= prologue_bytes) return false;
-        const std::vector<Piece> pieces = scan(file_);
-        return pieces.front().right && is(pieces.front(), BlockType::metadata);
     }
 
     void find_stated_layers(const std::vector<Piece>& pieces) {
@@ -406,6 +398,16 @@ private:
 };
 
 }  // namespace
+
+// Whatever the first bytes are, where metadata follow the prologue it is one.
+bool is_print(std::span<const std::byte> head) {
+    head = head.first(std::min(head.size(), print_head_bytes));
+    if (std::memcmp(head.data(), magic.data(), std::min(head.size(), magic.size())) == 0)
+        return true;
+    if (head.size() <= prologue_bytes) return false;
+    const Piece first = scan(head).front();
+    return first.right && is(first, BlockType::metadata);
+}
 
 Verification verify(std::span<const std::byte> file) {
     return Verifier(file).run();

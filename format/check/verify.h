@@ -56,6 +56,12 @@ struct Verification {
 
 Verification verify(std::span<const std::byte> file);
 
+// Is this a .lyr file, maybe a damaged one? Its first bytes tell, of which no more than these are looked at.
+inline constexpr std::size_t print_head_bytes = std::size_t{1} << 17;
+bool is_print(std::span<const std::byte> head);
+inline constexpr const char* no_print =
+    "this is not a .lyr file: it does not begin with LYR and the byte 1a";
+
 // For people: one line a finding, and what is whole. `name` is the file's.
 std::string to_text(const Verification& verification, const std::string& name);
 

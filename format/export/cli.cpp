@@ -1,6 +1,6 @@
 #include "format/export/cli.h"
 
-#include <optional>
+#include <algorithm>
 #include <string>
 
 #include "base/text.h"
@@ -34,22 +34,42 @@ int model_of(Role role) {
     }
 }
 
-// Commas and slashes mean something here.
-std::string label(std::string text) {
-    for (char& c : text)
-        if (c == ',' || c == '/' || c == '$') c = '_';
-    return escaped(text);
+// Commas and slashes mean something here. A letter that ASCII does not have becomes one sign, however many bytes it is.
+std::string label(const std::string& text) {
+    std::string out;
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        const bool goes_on = (byte & 0xc0) == 0x80;
+        if (c == ',' || c == '/' || c == '$')
+            out += '_';
+        else if (byte >= ' ' && byte <= '~')
+            out += c;
+        else if (!goes_on)
+            out += '?';
+    }
+    return out;
 }
 
-std::string head(const FileHeader& header, double tolerance_mm) {
-    const Summary& sum = header.summary;
+// What is extruded, with its width and from its lowest layer's bottom on.
+struct Extent {
+    PlaneBox box;
+    double bottom_mm = 0, top_mm = 0;
+
+    void add(const Polyline& line) {
+        for (const PlanePoint& p : line.points) box.add(p, line.width_mm / 2);
+    }
+};
+
+std::string head(const FileHeader& header, const Extent& extent, std::uint32_t layers,
+                 double tolerance_mm) {
+    const PlanePoint low = extent.box.empty() ? PlanePoint{} : extent.box.low;
+    const PlanePoint high = extent.box.empty() ? PlanePoint{} : extent.box.high;
     const std::string name = label(header.metadata.source_name);
     return "$$HEADERSTART\n$$ASCII\n$$UNITS/1.000000\n$$VERSION/200\n$$LABEL/1," +
            (name.empty() ? "part" : name) + "\n$$LABEL/2,support\n$$LABEL/3,around\n$$DIMENSION/" +
-           number(sum.low_x_mm) + ',' + number(sum.low_y_mm) + ',' + number(sum.low_z_mm) + ',' +
-           number(sum.high_x_mm) + ',' + number(sum.high_y_mm) + ',' + number(sum.high_z_mm) +
-           "\n$$LAYERS/" + std::to_string(sum.layers) + "\n// arcs are chords within " +
-           number(tolerance_mm, 6) +
+           number(low[0]) + ',' + number(low[1]) + ',' + number(extent.bottom_mm) + ',' +
+           number(high[0]) + ',' + number(high[1]) + ',' + number(extent.top_mm) + "\n$$LAYERS/" +
+           std::to_string(layers) + "\n// arcs are chords within " + number(tolerance_mm, 6) +
            " mm //\n// polylines and hatches are the middles of strands; widths, speeds, amounts, "
            "temperatures and objects are left out //\n$$HEADEREND\n$$GEOMETRYSTART\n";
 }
@@ -82,22 +102,41 @@ double chord_tolerance_mm(const Metadata& metadata) {
 
 Status write_cli(Reader& reader, const Sink& sink, Diagnostics& diagnostics) {
     const double tolerance_mm = chord_tolerance_mm(reader.header().metadata);
-    sink(head(reader.header(), tolerance_mm));
     PolylineCollector collector(reader.header().quantum, tolerance_mm);
+    Extent extent;
+    std::uint32_t layers = 0;
+    std::string text;  // behind the head, which states the box of all of it
     const auto end_layer = [&] {
-        std::string text;
-        for (const Polyline& line : collector.finish()) append(text, line);
-        sink(text);
+        for (const Polyline& line : collector.finish()) {
+            append(text, line);
+            extent.add(line);
+        }
+    };
+    const auto begin_layer = [&](const LayerState& state) {
+        const auto start = [&](double z_mm) {
+            text += "$$LAYER/" + number(z_mm) + '\n';
+            ++layers;
+        };
+        const double bottom_mm = std::max(0.0, state.z_mm - state.height_mm);
+        if (layers == 0) {
+            extent.bottom_mm = bottom_mm;
+            start(bottom_mm);
+        }
+        extent.bottom_mm = std::min(extent.bottom_mm, bottom_mm);
+        extent.top_mm = std::max(extent.top_mm, state.z_mm);
+        start(state.z_mm);
     };
     while (const Operation* operation = reader.read()) {
         if (std::holds_alternative<LayerStart>(*operation)) {
             end_layer();
-            sink("$$LAYER/" + number(reader.layer().state.z_mm) + '\n');
+            begin_layer(reader.layer().state);
         }
         collector.take(*operation, reader.path());
     }
     if (reader.error()) return *reader.error();
     end_layer();
+    sink(head(reader.header(), extent, layers, tolerance_mm));
+    sink(text);
     sink("$$GEOMETRYEND\n");
     diagnostics.push_back({Severity::note,
                            ExitStatus::ok,

@@ -14,6 +14,10 @@ bool is_wall(Role role) {
     return role == Role::outer_wall || role == Role::inner_wall || role == Role::overhang_wall;
 }
 
+double gap_mm(const std::vector<PlanePoint>& line) {
+    return std::hypot(line.front()[0] - line.back()[0], line.front()[1] - line.back()[1]);
+}
+
 }  // namespace
 
 double area_mm2(const std::vector<PlanePoint>& closed) {
@@ -51,9 +55,10 @@ void PolylineCollector::close() {
     drawing_ = false;
     Polyline& last = done_.back();
     constexpr std::size_t least = 3;
-    if (last.hatch || last.points.size() <= least || begin_.x != at_.x || begin_.y != at_.y) return;
-    last.closed = true;
-    last.points.pop_back();
+    if (last.hatch || last.points.size() <= least) return;
+    const bool meets = begin_.x == at_.x && begin_.y == at_.y;
+    last.closed = meets || (is_wall(last.role) && gap_mm(last.points) < last.width_mm);
+    if (meets) last.points.pop_back();
 }
 
 void PolylineCollector::turn(double center_x, double center_y, const Point& from, double sweep_rad,

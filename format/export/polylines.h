@@ -5,10 +5,12 @@
 //     kind. Lines of a hatch are pairs of points each.
 //  2. Ends of motions are points of it, exactly; an arc is followed within the tolerance by as few chords as that takes, all
 //     alike.
-//  3. A polyline is closed if it ends where it began; the point is then in it once.
+//  3. A polyline is closed if it ends where it began; the point is then in it once. A wall whose ends are less than its
+//     width apart is closed too: that is the gap other slicers leave at a seam.
 
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -25,6 +27,19 @@ struct Polyline {
     bool hatch = false;   // pairs of points
     bool closed = false;
     std::vector<PlanePoint> points{};
+};
+
+struct PlaneBox {
+    PlanePoint low{1, 1}, high{0, 0};
+
+    bool empty() const { return low[0] > high[0]; }
+    void add(const PlanePoint& point, double around_mm = 0) {
+        const bool first = empty();
+        for (std::size_t i = 0; i < point.size(); ++i) {
+            low[i] = first ? point[i] - around_mm : std::min(low[i], point[i] - around_mm);
+            high[i] = first ? point[i] + around_mm : std::max(high[i], point[i] + around_mm);
+        }
+    }
 };
 
 // Signed: positive if it turns counter-clockwise.

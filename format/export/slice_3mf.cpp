@@ -57,11 +57,11 @@ std::string model_head(const FileHeader& header, double tolerance_mm, double bot
 }
 
 // The eight corners of a box and its twelve triangles, which look outwards.
-std::string box_mesh(const Summary& sum, double bottom_mm, double top_mm) {
+std::string box_mesh(const PlaneBox& box, double bottom_mm, double top_mm) {
     std::string text = "<mesh><vertices>";
     for (int corner = 0; corner < 8; ++corner)
-        text += "<vertex x=\"" + number(corner & 1 ? sum.high_x_mm : sum.low_x_mm) + "\" y=\"" +
-                number(corner & 2 ? sum.high_y_mm : sum.low_y_mm) + "\" z=\"" +
+        text += "<vertex x=\"" + number(corner & 1 ? box.high[0] : box.low[0]) + "\" y=\"" +
+                number(corner & 2 ? box.high[1] : box.low[1]) + "\" z=\"" +
                 number(corner & 4 ? top_mm : bottom_mm) + "\"/>";
     text += "</vertices><triangles>";
     constexpr int triangles[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6},
@@ -127,12 +127,13 @@ public:
         zip_.write("</s:slicestack>\n<object id=\"2\" type=\"model\" name=\"" +
                    escaped_xml(header_.metadata.source_name) +
                    "\" s:meshresolution=\"lowres\" s:slicestackid=\"1\">" +
-                   box_mesh(header_.summary, bottom_mm_, top_mm_.value_or(0)) +
+                   box_mesh(box_, bottom_mm_, top_mm_.value_or(0)) +
                    "</object>\n</resources>\n<build><item objectid=\"2\"/></build>\n</model>\n");
     }
     std::size_t open_walls() const { return open_walls_; }
     double tolerance_mm() const { return tolerance_mm_; }
-    bool empty() const { return !top_mm_; }
+    bool has_layers() const { return top_mm_.has_value(); }
+    bool has_polygons() const { return !box_.empty(); }
 
 private:
     void end_layer() {
@@ -140,7 +141,10 @@ private:
         std::vector<Polyline> walls = collector_.finish();
         open_walls_ += static_cast<std::size_t>(
             std::erase_if(walls, [](const Polyline& wall) { return !wall.closed; }));
-        zip_.write(slice(*top_mm_, outline_of(std::move(walls), digit_mm)));
+        const auto outline = outline_of(std::move(walls), digit_mm);
+        for (const auto& polygon : outline)
+            for (const PlanePoint& point : polygon) box_.add(point);
+        zip_.write(slice(*top_mm_, outline));
     }
 
     const FileHeader& header_;
@@ -150,6 +154,7 @@ private:
     std::optional<double> top_mm_;
     double bottom_mm_ = 0;
     std::size_t open_walls_ = 0;
+    PlaneBox box_;
 };
 
 }  // namespace
@@ -168,9 +173,15 @@ Status write_slice_3mf(Reader& reader, const Sink& sink, Diagnostics& diagnostic
         slices.take(*operation, reader.path());
     }
     if (reader.error()) return *reader.error();
-    if (slices.empty())
+    if (!slices.has_layers())
         return Diagnostic{Severity::error, ExitStatus::input, "the print has no layers", {}};
     slices.end();
+    if (!slices.has_polygons())
+        return Diagnostic{Severity::error,
+                          ExitStatus::unsupported,
+                          "3MF slices are outlines, and the print has none: no outer wall of it is "
+                          "a closed ring",
+                          {}};
     diagnostics.push_back({Severity::note,
                            ExitStatus::ok,
                            "3MF slices are outlines, arcs as chords within " +

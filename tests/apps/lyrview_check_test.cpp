@@ -83,6 +83,36 @@ TEST_CASE("lyrview --repair: the layers in front of the damage, said and whole")
     CHECK_FALSE(fs::exists(folder / "d.lyr"));
 }
 
+TEST_CASE(
+    "lyrview --repair: a whole print with times finer than it states comes out byte for byte") {
+    const Folder folder("lyrview-repair-times");
+    fs::copy_file(write_print("lyrview-repair-times", {draw_square, draw_arcs, draw_hatch}, {},
+                              [](format::LayerState& state) { state.estimated_time_s = 0.0014; }),
+                  folder / "a.lyr");
+    const Ended same = folder.run("lyrview --repair a.lyr -o b.lyr && cmp a.lyr b.lyr");
+    CHECK(same.status == 0);
+    CHECK(same.out.find("nothing is to be repaired\nb.lyr: 3 layers, ") != std::string::npos);
+}
+
+TEST_CASE("lyrview: an endless input that is no print, or no G-code, is refused") {
+    const Folder folder("lyrview-endless");
+    for (const char* what : {"--verify", "--repair -o x.lyr", "-o x.html", "--info"})
+        for (const char* command : {"lyrview /dev/zero ", "cat /dev/zero | lyrview - "}) {
+            CAPTURE(what);
+            check_failure(folder.run(command + std::string(what)), 3, "this is not a .lyr file");
+        }
+    check_failure(folder.run("lyrview --from-gcode /dev/zero -o x.lyr"), 3, "longer than ");
+    CHECK(folder.files().empty());
+}
+
+TEST_CASE("lyrview --verify: a print whose first byte is damaged is still one") {
+    const Folder folder = with_prints("lyrview-verify-magic");
+    std::string damaged = text_of(folder / "a.lyr");
+    damaged[0] = 'l';
+    folder.write("c.lyr", damaged);
+    check_failure(folder.run("lyrview --verify c.lyr > out"), 3, "the prologue is damaged");
+}
+
 TEST_CASE("lyrview --diff: 0 for the same, 9 for others, 3 for what cannot be read") {
     const Folder folder = with_prints("lyrview-diff");
     const Ended same = folder.run("cp a.lyr c.lyr; lyrview --diff a.lyr c.lyr");

@@ -116,12 +116,24 @@ TEST_CASE("lyrview: the picture never takes the place of the print") {
     CHECK(text_of(folder / "a.lyr") == before);
 }
 
-TEST_CASE("lyrview: a layer of a file that is cut short is refused with what to do") {
+TEST_CASE(
+    "lyrview: a whole layer of a file that is cut short is drawn, from a file as from a pipe") {
     const Folder folder = with_print("lyrview-cut");
     const std::string whole = text_of(folder / "a.lyr");
     folder.write("cut.lyr", whole.substr(0, whole.size() - 40));
-    check_failure(folder.run("lyrview cut.lyr --layer 1 -o x.svg"), 3,
-                  "cut short (lyrview --info tells how far it is whole)");
+    for (const char* ending : {"svg", "dxf"}) {
+        const std::string command = std::string(" --layer 2 -o - --to ") + ending;
+        const Ended drawn = folder.run("lyrview a.lyr" + command);
+        CHECK(drawn.status == 0);
+        for (const char* cut : {"lyrview cut.lyr", "cat cut.lyr | lyrview -"}) {
+            const Ended again = folder.run(cut + command);
+            CHECK(again.status == 0);
+            CHECK(again.out == drawn.out);
+        }
+    }
+    for (const char* layer : {"3", "4"})
+        check_failure(folder.run("lyrview cut.lyr -o x.svg --layer " + std::string(layer)), 3,
+                      "the last whole layer is 3");
     check_failure(folder.run("lyrview cut.lyr --info"), 3, "the last whole layer is 3");
     CHECK_FALSE(fs::exists(folder / "x.svg"));
 }

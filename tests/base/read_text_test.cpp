@@ -26,6 +26,34 @@ TEST_CASE("read text: all of a file up to the limit, and not a byte more") {
     }
 }
 
+TEST_CASE("read text: the first bytes are looked at before the rest is read, once") {
+    const fs::path folder = fs::path(LYR_BUILD) / "test-read-text";
+    fs::create_directories(folder);
+    for (const std::size_t size : {0u, 3u, 300'000u}) {
+        CAPTURE(size);
+        std::ofstream(folder / "head", std::ios::binary) << std::string(size, 'x');
+        int calls = 0;
+        std::size_t seen = 0;
+        HeadCheck check{100'000, [&](std::string_view head) -> std::optional<std::string> {
+                            ++calls;
+                            seen = head.size();
+                            return std::nullopt;
+                        }};
+        CHECK(read_text(folder / "head", size, check));
+        CHECK(calls == 1);
+        CHECK(seen >= std::min(size, check.bytes));
+        check.wrong = [](std::string_view) { return std::optional<std::string>("no"); };
+        const auto refused = read_text(folder / "head", size, check);
+        REQUIRE(!refused);
+        CHECK(refused.error().message == "no");
+    }
+    const HeadCheck refuses{1, [](std::string_view) { return std::optional<std::string>("no"); }};
+    CHECK(read_text("/dev/zero", most_readable_bytes("/dev/zero"), refuses).error().message ==
+          "no");
+    CHECK(most_readable_bytes("/dev/zero") == most_streamed_bytes);
+    CHECK(most_readable_bytes(folder / "head") > most_streamed_bytes);
+}
+
 TEST_CASE("read text: what cannot be read is an error of input that names the path") {
     for (const std::string path : {"/nonexistent", "/tmp", "/dev/zero"}) {
         const auto read = read_text(path, 1000);

@@ -49,5 +49,12 @@ lyr.arc = (() => {
         return angle - sweep < turn - angle ? 1 : 0;
     }
 
-    return {mostSagittaPerChord, shape, circleShape, length, pointAt, nearestShare};
+    // Calls take(x, y) for the points where the arc is farthest to a side, but for its ends.
+    function farthest(arc, take) {
+        const quarter = Math.PI / 2, low = Math.min(arc.start, arc.start + arc.sweep);
+        for (let k = Math.ceil(low / quarter); k * quarter <= low + Math.abs(arc.sweep); ++k)
+            take(arc.x + arc.radius * Math.cos(k * quarter), arc.y + arc.radius * Math.sin(k * quarter));
+    }
+
+    return {mostSagittaPerChord, shape, circleShape, length, pointAt, nearestShare, farthest};
 })();

@@ -20,7 +20,9 @@ lyr.camera = (() => {
             this.elevation = 0.55;
             this.target = low.map((value, i) => (value + high[i]) / 2);
             this.radius = Math.max(1, Math.hypot(...low.map((value, i) => high[i] - value)) / 2);
-            this.distance = this.radius / Math.sin(opening_rad / 2) / Math.min(1, aspect) * 0.92;
+            // The ball around the box touches the sides of the narrower opening.
+            const narrow_rad = Math.atan(Math.tan(opening_rad / 2) * Math.min(1, aspect));
+            this.distance = this.radius / Math.sin(narrow_rad);
         }
 
         // Unit vectors: to the right, upwards on the screen, and towards the eye.

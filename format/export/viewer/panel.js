@@ -25,7 +25,7 @@ lyr.panel = (() => {
     function printPairs(print) {
         const {file} = print, values = file.metadata.values;
         const of = (key) => Number(values.get(key) ?? 0);
-        const box = ["x", "y", "z"].map((axis) => of(`high_${axis}_mm`) - (axis === "z" ? 0 : of(`low_${axis}_mm`)));
+        const {low, high} = print.box(), box = [high[0] - low[0], high[1] - low[1], high[2]];
         const filament_mm = of("filament_mm"), mass_g = of("mass_g");
         const filament = filament_mm > 0 && length(filament_mm) + (mass_g > 0 ? `, ${number(mass_g)} g` : "");
         return [

@@ -41,6 +41,32 @@ lyr.print = (() => {
         }
     }
 
+    function noBox() {
+        return {low: [Infinity, Infinity, Infinity], high: [-Infinity, -Infinity, -Infinity]};
+    }
+
+    function widen(box, low, high) {
+        for (let axis = 0; axis < 3; ++axis) {
+            box.low[axis] = Math.min(box.low[axis], low[axis]);
+            box.high[axis] = Math.max(box.high[axis], high[axis]);
+        }
+    }
+
+    // With the strands' width.
+    function extrudedBox(motions, quantum_mm) {
+        const box = noBox();
+        for (let i = 0; i < motions.count; ++i) {
+            if (!motions.extrudes(i)) continue;
+            const half = motions.styles[motions.style[i]].width_mm / 2;
+            const take = (x, y, z) => widen(box, [x * quantum_mm - half, y * quantum_mm - half, z * quantum_mm],
+                [x * quantum_mm + half, y * quantum_mm + half, z * quantum_mm]);
+            take(motions.fromX[i], motions.fromY[i], motions.fromZ[i]);
+            take(motions.toX[i], motions.toY[i], motions.toZ[i]);
+            if (motions.isCurved(i)) lyr.arc.farthest(motions.shape(i), (x, y) => take(x, y, motions.toZ[i]));
+        }
+        return box;
+    }
+
     class Print {
         constructor(bytes) {
             this.file = new lyr.file.PrintFile(bytes);
@@ -50,6 +76,7 @@ lyr.print = (() => {
             this.sums = new RoleSums();
             this.damaged = new Map(); // layer: what is wrong
             this.surveyed = 0; // layers
+            this.boxes = new Map(); // layer: of what it extrudes, once it was decoded
             this.kept = new Map(); // decoded, the one used last at the end
             this.keptCount = 0;
         }
@@ -58,15 +85,21 @@ lyr.print = (() => {
             return this.file.layers.length;
         }
 
-        // {low: [x, y, z], high: [...]} of all motions, mm.
+        // {low: [x, y, z], high: [...]} of what is extruded, mm: of layers that were not decoded yet, that of all motions.
+        // The first and the last one are, as there the head comes from elsewhere, and goes.
         box() {
-            const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
-            for (const layer of this.file.layers.filter((head) => !head.damage))
-                ["x", "y", "z"].forEach((axis, i) => {
-                    low[i] = Math.min(low[i], layer.low[axis] * this.quantum_mm);
-                    high[i] = Math.max(high[i], layer.high[axis] * this.quantum_mm);
-                });
-            return low[0] <= high[0] ? {low, high} : {low: [0, 0, 0], high: [1, 1, 1]};
+            for (const index of [0, this.layerCount - 1]) if (!this.boxes.has(index)) this.layer(index);
+            const box = noBox(), {low, high} = box;
+            this.file.layers.forEach((head, index) => {
+                const own = this.boxes.get(index);
+                if (own) widen(box, own.low, own.high);
+                else if (!head.damage) widen(box, this.in_mm(head.low), this.in_mm(head.high));
+            });
+            return low[0] <= high[0] ? box : {low: [0, 0, 0], high: [1, 1, 1]};
+        }
+
+        in_mm(point) {
+            return [point.x, point.y, point.z].map((quanta) => quanta * this.quantum_mm);
         }
 
         // Decoded, with timing; null: it is damaged.
@@ -85,6 +118,7 @@ lyr.print = (() => {
                 this.damaged.set(index, error.message);
                 return null;
             }
+            if (!this.boxes.has(index)) this.boxes.set(index, extrudedBox(layer.motions, this.quantum_mm));
             layer.timing = lyr.timing.spread(layer, this.quantum_mm);
             this.keep(layer);
             return layer;

@@ -52,6 +52,7 @@ lyr.spaceStage = (() => {
         }
 
         fit() {
+            this.camera.box = this.print.box();
             this.camera.fit(this.canvas.width / this.canvas.height);
             this.needsFit = this.canvas.width < 2 || this.canvas.height < 2;
             this.moved();

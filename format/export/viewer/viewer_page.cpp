@@ -12,6 +12,7 @@
 #include "base/base64.h"
 #include "base/read_text.h"
 #include "format/export/viewer/viewer_files.h"
+#include "format/layout.h"
 #include "format/reader.h"
 
 namespace lyr::format {
@@ -105,7 +106,13 @@ void write_page(std::string_view bytes, const std::string& title, const Write& w
 }  // namespace
 
 Status write_viewer(const std::string& path, const Write& write) {
-    const auto bytes = read_text(path, largest_shown_bytes);
+    const auto wrong = [](std::string_view head) -> std::optional<std::string> {
+        const auto first =
+            std::as_bytes(std::span(head)).first(std::min(head.size(), magic.size()));
+        if (std::equal(first.begin(), first.end(), magic.begin())) return std::nullopt;
+        return "this is not a .lyr file: it does not begin with LYR and the byte 1a";
+    };
+    const auto bytes = read_text(path, largest_shown_bytes, {magic.size(), wrong});
     if (!bytes) return bytes.error();
     const auto header = check(*bytes, path == "-" ? standard_input_name : path);
     if (!header) return header.error();

@@ -163,15 +163,17 @@ TEST_CASE("cli 1, 2: lengths are the print's, closed polylines turn as they say"
             Diagnostics diagnostics;
             const auto layers = read_cli(written(path, write_cli, diagnostics));
             CHECK(diagnostics.size() == 1);
-            REQUIRE(layers.size() == 2);
+            REQUIRE(layers.size() == 3);
+            CHECK(layers[0].z_mm == 0);
+            CHECK(layers[0].lines.empty());
             auto reader = Reader::open(path);
             std::vector<double> extruded_mm;
             while (const Operation* operation = reader->read())
                 if (std::holds_alternative<LayerStart>(*operation))
                     extruded_mm.push_back(Quantum{}.mm(reader->layer().totals.extruded_quanta));
-            for (std::size_t i = 0; i < layers.size(); ++i) {
+            for (std::size_t i = 0; i < extruded_mm.size(); ++i) {
                 double sum = 0;
-                for (const CliLayer::Line& line : layers[i].lines) {
+                for (const CliLayer::Line& line : layers[i + 1].lines) {
                     sum += length_mm(line);
                     CHECK(line.model == 1);
                     const bool closed = line.points.front() == line.points.back();
@@ -182,8 +184,53 @@ TEST_CASE("cli 1, 2: lengths are the print's, closed polylines turn as they say"
                 CHECK(sum <= extruded_mm[i] + 1e-3);
                 CHECK(sum >= extruded_mm[i] * 0.99);
             }
-            CHECK(layers[1].z_mm == 0.4);
+            CHECK(layers[2].z_mm == 0.4);
         }
+}
+
+TEST_CASE("cli 3: the dimension holds the part, from the bed on, and layers are counted") {
+    for (const tests::Frame& frame : frames) {
+        const std::string path = tests::write_print("cli_box", {draw_ring, draw_ring}, frame);
+        Diagnostics diagnostics;
+        const std::string text = written(path, write_cli, diagnostics);
+        const std::size_t at = text.find("$$DIMENSION/");
+        REQUIRE(at != text.npos);
+        double x0 = 0, y0 = 0, z0 = 1, x1 = 0, y1 = 0, z1 = 0;
+        REQUIRE(std::sscanf(text.c_str() + at, "$$DIMENSION/%lf,%lf,%lf,%lf,%lf,%lf", &x0, &y0, &z0,
+                            &x1, &y1, &z1) == 6);
+        CHECK(z0 == 0);
+        CHECK(z1 == doctest::Approx(0.4));
+        CHECK(text.find("$$LAYERS/3\n") != text.npos);
+        CHECK(std::all_of(text.begin(), text.end(),
+                          [](char c) { return c == '\n' || (c >= ' ' && c <= '~'); }));
+        double low_x = 1e9, low_y = 1e9, high_x = -1e9, high_y = -1e9;
+        for (const CliLayer& layer : read_cli(text))
+            for (const CliLayer::Line& line : layer.lines)
+                for (const PlanePoint& p : line.points) {
+                    low_x = std::min(low_x, p[0]);
+                    low_y = std::min(low_y, p[1]);
+                    high_x = std::max(high_x, p[0]);
+                    high_y = std::max(high_y, p[1]);
+                }
+        constexpr double half_mm = 0.2;
+        for (const double off : {low_x - x0, low_y - y0, x1 - high_x, y1 - high_y})
+            CHECK(off == doctest::Approx(half_mm).epsilon(1e-3));
+    }
+}
+
+TEST_CASE("cli: a label of a file in ASCII is ASCII") {
+    const std::string path = test::scratch("cli_label");
+    Metadata metadata;
+    metadata.source_name = "Z\xc3\xa4hler, 1/2.step";
+    auto writer = Writer::create(path, Quantum{}, metadata);
+    REQUIRE(writer.ok());
+    LayerEncoder layer(Quantum{}, tests::layer_state(0));
+    draw_ring({layer, {}});
+    REQUIRE(writer->append(*layer.finish()).ok());
+    REQUIRE(writer->finish().ok());
+    Diagnostics diagnostics;
+    const std::string text = written(path, write_cli, diagnostics);
+    CHECK(text.find("$$LABEL/1,Z?hler_ 1_2.step\n") != text.npos);
 }
 
 TEST_CASE("polylines 2: chords stay within the tolerance, and are as few as that allows") {
@@ -260,12 +307,67 @@ TEST_CASE("3mf 2: the mesh is a closed box that looks outwards") {
                       6;
     }
     CHECK(vertices.size() == 8);
+    for (std::size_t at = 0; (at = model.find("<s:vertex ", at)) != model.npos; ++at) {
+        double x = 0, y = 0;
+        REQUIRE(std::sscanf(model.c_str() + at, "<s:vertex x=\"%lf\" y=\"%lf\"", &x, &y) == 2);
+        CHECK(vertices.front()[0] <= x);
+        CHECK(x <= vertices.back()[0]);
+        CHECK(vertices.front()[1] <= y);
+        CHECK(y <= vertices.back()[1]);
+    }
     CHECK(edges.size() == 36);
     for (const auto& [edge, count] : edges) {
         CHECK(count == 1);
         CHECK(edges.contains({edge.second, edge.first}));
     }
     CHECK(volume_mm3 > 0);
+}
+
+TEST_CASE("3mf 1: a wall with a seam's gap is a ring, in 3MF and in CLI") {
+    const auto draw = [](double gap_mm) {
+        return [gap_mm](const tests::Pen& pen) {
+            pen.layer.begin_path({.role = Role::outer_wall,
+                                  .width_mm = 0.4,
+                                  .height_mm = 0.2,
+                                  .flow = 1,
+                                  .speed_mm_s = 50});
+            pen.travel(5, 0.2);
+            pen.line(9.8, 0.2);
+            pen.line(9.8, 9.8);
+            pen.line(0.2, 9.8);
+            pen.line(0.2, 0.2);
+            pen.line(5 - gap_mm, 0.2);
+        };
+    };
+    for (const tests::Frame& frame : frames) {
+        const std::string path = tests::write_print("3mf_seam", {draw(0.19), draw(0.41)}, frame);
+        Diagnostics diagnostics;
+        auto files = test::read_zip(written(path, write_slice_3mf, diagnostics));
+        const auto slices = read_slices(files["3D/3dmodel.model"]);
+        REQUIRE(slices.size() == 2);
+        CHECK(slices[0].area_mm2 == doctest::Approx(100).epsilon(0.002));
+        CHECK(slices[1].outer == 0);
+        CHECK(diagnostics.back().severity == Severity::warning);
+        const auto layers = read_cli(written(path, write_cli, diagnostics));
+        REQUIRE(layers.size() == 3);
+        const auto is_ring = [](const CliLayer& layer) {
+            return layer.lines.at(0).direction != 2 &&
+                   layer.lines[0].points.front() == layer.lines[0].points.back();
+        };
+        CHECK(is_ring(layers[1]));
+        CHECK(!is_ring(layers[2]));
+    }
+}
+
+TEST_CASE("3mf 4: a print without a closed wall is refused") {
+    const std::string path = tests::write_print("3mf_open", {tests::draw_hatch});
+    auto reader = Reader::open(path);
+    REQUIRE(reader.ok());
+    Diagnostics diagnostics;
+    const Status refused = write_slice_3mf(
+        *reader, [](std::string_view) {}, diagnostics);
+    REQUIRE(!refused.ok());
+    CHECK(refused.error().status == ExitStatus::unsupported);
 }
 
 TEST_CASE("3mf 3: parts one after the other are refused, with the layer") {

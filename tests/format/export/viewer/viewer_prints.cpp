@@ -1,7 +1,7 @@
 // For the viewer's test, which is no C++: prints to look at, and what the reader says of a print.
 //
 //     viewer_prints make FOLDER        writes kinds.lyr (every kind of operation, at random), small.lyr (likewise, a few
-//                                      kB) and large.lyr (200 layers, a million operations)
+//                                      kB), far.lyr (a circle far from the head's start) and large.lyr (200 layers, a million operations)
 //     viewer_prints dump FILE LAYER    a layer's motions, one a line, in quanta: kind, role, from, to, and of an arc the
 //                                      sagitta, of a circle its centre and 1 if counter-clockwise; then style
 //     viewer_prints heads FILE         a line for each layer: operations, estimated ms, and motions of the layer
@@ -107,6 +107,22 @@ void make_large(const std::string& path) {
     finish(writer);
 }
 
+// A circle that the head comes to from far away, and leaves for another far place.
+void make_far(const std::string& path) {
+    Writer writer = begin(path, {1000}, "far");
+    LayerState state = test::RandomLayer::state(0.2);
+    state.start_x_mm = state.start_y_mm = 0;
+    LayerEncoder layer({1000}, state);
+    layer.begin_path(
+        {.role = Role::outer_wall, .width_mm = 0.4, .height_mm = 0.2, .flow = 1, .speed_mm_s = 50});
+    const double turn = 0.3;
+    layer.travel_to(105 + 5 * std::cos(turn), 105 + 5 * std::sin(turn));
+    layer.circle(105, 105, true);
+    layer.travel_to(0, 250);
+    append(writer, layer.finish());
+    finish(writer);
+}
+
 void print_place(const Point& from, const Point& to) {
     std::printf(" %" PRId64 " %" PRId64 " %" PRId64 " %" PRId64 " %" PRId64 " %" PRId64, from.x,
                 from.y, from.z, to.x, to.y, to.z);
@@ -185,6 +201,7 @@ int main(int argc, char** argv) {
     if (command == "make" && argc == 3) {
         make_kinds(path + "/kinds.lyr", 12, 400);
         make_kinds(path + "/small.lyr", 3, 20);
+        make_far(path + "/far.lyr");
         make_large(path + "/large.lyr");
     } else if (command == "dump" && argc == 4) {
         dump(path, static_cast<std::uint32_t>(std::strtoul(argv[3], nullptr, 10)));

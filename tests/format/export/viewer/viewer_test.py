@@ -265,6 +265,63 @@ def measuring_snaps(test, browser):
     quiet(browser, "measuring")
 
 
+def the_print_is_in_the_picture(test, browser):
+    """The box's corners, on a phone and on a desktop, at first and fitted again."""
+    for name in test.prints:
+        for width, height, phone in [(390, 844, True), (360, 640, True), (1280, 800, False)]:
+            browser.size(width, height, phone=phone)
+            test.show(browser, name, view="#3d")
+            for fitted in [False, True]:
+                farthest = browser.run("""
+                    if (arguments[0]) {
+                        lyr.shown.space.zoom(3, 0, 0);
+                        lyr.shown.fit();
+                    }
+                    const {low, high} = lyr.shown.print.box(), {camera, canvas} = lyr.shown.space;
+                    const m = camera.matrix(canvas.width / canvas.height);
+                    let farthest = 0;
+                    for (let corner = 0; corner < 8; ++corner) {
+                        const [x, y, z] = [0, 1, 2].map((axis) => (corner >> axis & 1 ? high : low)[axis]);
+                        const [px, py, , w] = [0, 1, 2, 3].map((i) => m[i] * x + m[4 + i] * y + m[8 + i] * z + m[12 + i]);
+                        farthest = Math.max(farthest, Math.abs(px / w), Math.abs(py / w));
+                    }
+                    return farthest;""", fitted)
+                check(0.4 < farthest <= 1, name, "reaches", farthest, "of the picture of", width, height)
+    browser.size(1280, 800)
+
+
+def the_box_is_of_what_is_extruded(test, browser):
+    """The head comes from far away, and goes there: neither counts."""
+    test.show(browser, "far")
+    low, high = browser.run("const b = lyr.shown.print.box(); return [b.low, b.high];")
+    check(max(abs(a - b) for a, b in zip(low[:2] + high[:2], [99.8, 99.8, 110.2, 110.2])) < 1e-3, "the box is", low, high)
+    size = browser.run("document.getElementById('panel').textContent")
+    check("10.4 × 10.4 × 0.2" in size, "the panel tells", size)
+    corner = browser.run("lyr.shown.plan.toScreen(99.8, 105).x")
+    check(0 < corner < stage_box(browser)["width"] / 2, "it is not fitted to what is extruded:", corner)
+
+
+def statistics_leave_the_sliders_free(test, browser):
+    for width, height in [(700, 500), (390, 844), (360, 640)]:
+        browser.size(width, height, phone=True)
+        test.show(browser, "kinds")
+        browser.run("const p = document.getElementById('panel');"
+                    "if (p.classList.contains('closed')) document.getElementById('show-panel').click();")
+        browser.run(FRAMES)
+        covered = browser.run("""
+            const panel = document.getElementById("panel").getBoundingClientRect();
+            const free = document.getElementById("layers").getBoundingClientRect();
+            const head = document.querySelector("header").getBoundingClientRect();
+            return [head.bottom, panel.top, panel.bottom, free.top];""")
+        check(covered[0] <= covered[1] < covered[2] <= covered[3] + 0.5, "statistics cover", width, height, covered)
+        box = browser.run("const b = document.getElementById('show-help').getBoundingClientRect();"
+                          "return [b.x + b.width / 2, b.y + b.height / 2, b.width, b.height, innerWidth];")
+        check(min(box[2:4]) >= 34 and box[0] + box[2] / 2 <= box[4], "help is at", box)
+        browser.pointer([(box[0], box[1]), "down", "up"], kind="touch")
+        check(browser.run("document.getElementById('help').open"), "the help does not open at", width, height)
+    browser.size(1280, 800)
+
+
 def fingers_work(test, browser):
     browser.size(390, 844, phone=True, ratio=2)
     test.show(browser, test.prints[-1], view="")
@@ -456,7 +513,8 @@ def without_webgl(test):
 
 
 TESTS = [drawn_as_the_file_says, strands_have_their_colour, arcs_stay_arcs, keys_work, time_runs, statistics_add_up,
-         roles_can_be_hidden, measuring_snaps, every_flipped_bit_is_found, damage_is_told, fingers_work, pictures,
+         roles_can_be_hidden, measuring_snaps, every_flipped_bit_is_found, damage_is_told, the_print_is_in_the_picture,
+         the_box_is_of_what_is_extruded, statistics_leave_the_sliders_free, fingers_work, pictures,
          a_lost_card_comes_back, a_large_print_is_smooth]
 
 
