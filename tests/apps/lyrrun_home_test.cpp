@@ -85,7 +85,7 @@ TEST_CASE("lyrrun --home: options that make no sense together, and printers that
     check_failure(folder.run("lyrrun --home --tune bed=60 --simulate --printer p.toml"), "lyrrun",
                   2, "--tune goes without");
     check_failure(folder.run("lyrrun --home --json --simulate --printer p.toml"), "lyrrun", 2,
-                  "--json");
+                  "go without a print and what is said of one");
     check_failure(folder.run("lyrrun --home"), "lyrrun", 2, "--printer");
     check_failure(folder.run("lyrrun --home --simulate"), "lyrrun", 7, "axis.x.endstop");
     check_failure(folder.run("lyrrun --home --printer p.toml"), "lyrrun", 7, "axis.x.step");

@@ -391,6 +391,7 @@ lyr.page = (() => {
             this.panelDirty = true;
             if (!more) {
                 ++this.state.revision; // ranges of colours are known now
+                if (!this.space.touched) this.space.fit(); // and so is the box
                 if (print.damaged.size > 0) this.notice([...print.damaged.values()][0] +
                     (print.damaged.size > 1 ? ` (and ${print.damaged.size - 1} more)` : ""), true);
                 if (this.space.every > 1 && this.space.available)

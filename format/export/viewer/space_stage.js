@@ -22,7 +22,7 @@ lyr.spaceStage = (() => {
             this.available = this.view !== null;
             this.every = Math.max(1, Math.ceil(print.file.operations / mostInstances));
             this.stats = {last_ms: 0, card_ms: 0, frames: 0, instances: 0, coarse: false};
-            this.needsFit = true;
+            this.touched = false; // by hand, since it was fitted
             this.coloredFor = "";
             this.movedAt_ms = -Infinity;
             this.budget = firstBudget;
@@ -48,13 +48,14 @@ lyr.spaceStage = (() => {
             this.height = height;
             this.canvas.width = Math.max(1, Math.round(width * ratio));
             this.canvas.height = Math.max(1, Math.round(height * ratio));
-            if (this.needsFit) this.fit();
+            if (!this.touched) this.fit();
         }
 
+        // Stays so until one turns, shifts or zooms.
         fit() {
             this.camera.box = this.print.box();
             this.camera.fit(this.canvas.width / this.canvas.height);
-            this.needsFit = this.canvas.width < 2 || this.canvas.height < 2;
+            this.touched = false;
             this.moved();
         }
 
@@ -63,12 +64,14 @@ lyr.spaceStage = (() => {
         }
 
         pan(dx, dy, second) {
+            this.touched = true;
             if (second) this.camera.pan(dx, dy, this.height);
             else this.camera.orbit(dx, dy);
             this.moved();
         }
 
         zoom(factor, x, y) {
+            this.touched = true;
             const middle = {x: this.canvas.width / this.ratio / 2, y: this.height / 2};
             this.camera.zoom(factor, x - middle.x, y - middle.y, this.height);
             this.moved();
