@@ -2,6 +2,7 @@
 
 #include <array>
 #include <charconv>
+#include <filesystem>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -65,16 +66,16 @@ constexpr Program program{
     "9 the prints of --diff differ.\n"};
 
 void add_gcode(CLI::App& app, GcodeRequest& gcode) {
-    const auto into = [](std::string& value) {
-        return [&value](const std::string& text) {
+    const auto into = [](std::string& value, const char* choices) {
+        return [&value, choices](const std::string& text) {
             value = text;
-            return std::optional<std::string>();
+            return text.empty() ? std::optional<std::string>(choices) : std::nullopt;
         };
     };
-    add_text(app, "--gcode-flavor", "marlin|klipper", into(gcode.flavor),
+    add_text(app, "--gcode-flavor", "marlin|klipper", into(gcode.flavor, "marlin or klipper"),
              "G-code for this firmware, whatever the print's gcode.flavor says");
     add_text(
-        app, "--gcode-e", "relative|absolute", into(gcode.extrusion),
+        app, "--gcode-e", "relative|absolute", into(gcode.extrusion, "relative or absolute"),
         "Filament counted anew in each move or from the layer's start; otherwise as the print's "
         "gcode.extrusion says");
     add_file(app, "--gcode-start", gcode.start_path,
@@ -180,8 +181,10 @@ Status check(const CLI::App& app, const Arguments& arguments, std::optional<Expo
 
 // From G-code to a print.
 Status bring_in(const CLI::App& app, const Arguments& arguments) {
-    const bool is_print = arguments.to.empty() ? arguments.output_path.ends_with(".lyr") ||
-                                                     arguments.output_path == "-"
+    std::string ending = std::filesystem::path(arguments.output_path).extension().string();
+    for (char& c : ending)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    const bool is_print = arguments.to.empty() ? ending == ".lyr" || arguments.output_path == "-"
                                                : arguments.to == "lyr";
     if (!arguments.lyr_path.empty() || arguments.info || arguments.layer > 0 ||
         arguments.all_layers || arguments.no_travel || arguments.gcode.any() ||
@@ -202,12 +205,12 @@ Status bring_in(const CLI::App& app, const Arguments& arguments) {
 Status work(const CLI::App& app, const Arguments& arguments) {
     if (arguments.lyr_path.empty() && arguments.gcode_path.empty())
         return usage("print is required");
+    if (arguments.gcode_path.empty() && app.count("--filament-diameter") > 0)
+        return usage("--filament-diameter needs --from-gcode: a print states its own");
     if (arguments.checks.any())
         return check_print(app, program, arguments.checks, arguments.lyr_path,
                            arguments.output_path, is_asked_more(arguments));
     if (!arguments.gcode_path.empty()) return bring_in(app, arguments);
-    if (app.count("--filament-diameter") > 0)
-        return usage("--filament-diameter needs --from-gcode: a print states its own");
     std::optional<ExportFormat> format;
     if (!arguments.info) {
         const bool draws = arguments.layer > 0 || arguments.all_layers;

@@ -135,6 +135,11 @@ TEST_CASE("lyrview: G-code comes in as a print that lyrrun takes") {
     CHECK(folder.run("lyrview d.lyr --info").out.find("of 3.5 mm") != std::string::npos);
     check_failure(folder.run("lyrview a.lyr --info --filament-diameter 3"), "lyrview", 2,
                   "needs --from-gcode");
+    check_failure(folder.run("lyrview a.lyr --verify --filament-diameter 2"), "lyrview", 2,
+                  "needs --from-gcode");
+    check_failure(folder.run("lyrview a.lyr -o e.gcode --gcode-flavor ''"), "lyrview", 2,
+                  "marlin or klipper");
+    CHECK(folder.run("lyrview --from-gcode a.gcode -o E.LYR").status == 0);
     folder.copy("gcode/cube_hole_prusaslicer.gcode", "prusa.gcode");
     CHECK(folder.run("lyrview --from-gcode prusa.gcode -o prusa.lyr").err.empty());
     CHECK(folder.run("lyrrun prusa.lyr --simulate").status == 0);
