@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <csignal>
 #include <thread>
 
@@ -72,14 +73,17 @@ TEST_CASE(
         if (i > 0 && (~events[i - 1].levels & events[i].levels & all_step_bits) != 0)
             steps.push_back(i);
     }
-    // Recorded times are read a moment after the one that the executor measured its gap from. Only steps keep their distance:
-    // pulses may end late.
+    // Steps fall behind their events and never catch up; pulses may end late. Recorded times are read a moment after the one
+    // that the executor measured from, a long one where the system does something else just then: so a step is compared
+    // with the one of the last four that was recorded the least late.
     constexpr std::int64_t reading_ns = 100'000;
-    for (std::size_t k = 4; k < steps.size(); ++k) {
-        const std::size_t from = steps[k - 4], to = steps[k];
-        shortened += writes[to].time_ns - writes[from].time_ns <
-                     events[to].time_ns - events[from].time_ns - reading_ns;
-    }
+    const auto behind_ns = [&](std::size_t k) {
+        return writes[steps[k]].time_ns - events[steps[k]].time_ns;
+    };
+    for (std::size_t k = 4; k < steps.size(); ++k)
+        shortened += behind_ns(k) < std::min({behind_ns(k - 1), behind_ns(k - 2), behind_ns(k - 3),
+                                              behind_ns(k - 4)}) -
+                                        reading_ns;
     CHECK(different == 0);
     CHECK(shortened == 0);
     CHECK(report->planned_s == doctest::Approx(static_cast<double>(events.back().time_ns) / 1e9));
