@@ -76,15 +76,7 @@ double flow_to_ends(std::span<const Strand> strands, double part_mm2) {
     double laid_mm2 = 0, most_mm2 = 0;
     for (const Strand& strand : strands) {
         const double length = length_mm(strand.path);
-        double covered = strand.width_mm * length;
-        if (const auto* path = std::get_if<Path>(&strand.path); path && !strand.widths_mm.empty()) {
-            covered = 0;
-            Point2 from = path->start;
-            for (std::size_t i = 0; i < path->segments.size(); ++i) {
-                covered += strand.widths_mm[i] * lyr::length_mm(from, path->segments[i]);
-                from = path->segments[i].end;
-            }
-        }
+        const double covered = flat_area_mm2(strand);
         laid_mm2 += covered;
         const double width_mm = length > 0 ? covered / length : 0;
         if (!is_closed(strand)) most_mm2 += 4 * width_mm * width_mm;

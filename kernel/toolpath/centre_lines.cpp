@@ -123,19 +123,11 @@ Range common(const Range& a, const Range& b) {
 
 // With round ends.
 double printed_mm2(const Strand& strand) {
-    if (strand.widths_mm.empty()) {
-        const double ends = is_closed(strand) ? 0 : std::numbers::pi / 4 * strand.width_mm;
-        return (length_mm(strand.path) + ends) * strand.width_mm;
-    }
-    const Path& path = std::get<Path>(strand.path);
-    double area = 0;
-    Point2 from = path.start;
-    for (std::size_t i = 0; i < path.segments.size(); ++i) {
-        area += length_mm(from, path.segments[i]) * strand.widths_mm[i];
-        from = path.segments[i].end;
-    }
+    double area = flat_area_mm2(strand);
     if (is_closed(strand)) return area;
-    for (const double width : {strand.widths_mm.front(), strand.widths_mm.back()})
+    const bool varies = !strand.widths_mm.empty();
+    for (const double width : {varies ? strand.widths_mm.front() : strand.width_mm,
+                               varies ? strand.widths_mm.back() : strand.width_mm})
         area += std::numbers::pi / 8 * width * width;
     return area;
 }

@@ -23,4 +23,17 @@ inline bool is_closed(const Strand& strand) {
     return !path || (!path->segments.empty() && path->segments.back().end == path->start);
 }
 
+// Of its widths along its way, without what is around its ends.
+inline double flat_area_mm2(const Strand& strand) {
+    if (strand.widths_mm.empty()) return length_mm(strand.path) * strand.width_mm;
+    const Path& path = std::get<Path>(strand.path);
+    double area = 0;
+    Point2 from = path.start;
+    for (std::size_t i = 0; i < path.segments.size(); ++i) {
+        area += length_mm(from, path.segments[i]) * strand.widths_mm[i];
+        from = path.segments[i].end;
+    }
+    return area;
+}
+
 }  // namespace lyr
