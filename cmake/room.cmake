@@ -5,9 +5,11 @@ add_library(lyr_flags INTERFACE)
 # Contraction is off so that results do not depend on the processor's fused multiply-add. Nobody asks errno about roots,
 # nor the processor's flags about traps: the compiler need not keep them, and results are the same.
 # What no program calls is left out of it, function by function.
-target_compile_options(lyr_flags INTERFACE -Wall -Wextra -Wconversion -Wshadow -ffp-contract=off -fno-math-errno
-                       -fno-trapping-math -ffunction-sections -fdata-sections)
+target_compile_options(lyr_flags INTERFACE -Wall -Wextra -Wconversion -ffp-contract=off -fno-math-errno -fno-trapping-math
+                       -ffunction-sections -fdata-sections)
 target_link_options(lyr_flags INTERFACE -Wl,--gc-sections)
+# A name of one source may be a constant of another that is compiled with it.
+target_compile_options(lyr_flags INTERFACE $<IF:$<BOOL:${LYR_UNITY}>,-Wshadow=local,-Wshadow>)
 if(LYR_SANITIZE STREQUAL thread)
   target_compile_options(lyr_flags INTERFACE -fsanitize=thread)
   target_link_options(lyr_flags INTERFACE -fsanitize=thread)
@@ -39,12 +41,22 @@ function(lyr_use_headers target)
   endif()
 endfunction()
 
-# lyr_room(<library> [SMALL] SOURCES <file>... [FAST <file>...] [LINK <library>...] [PRIVATE <library>...])
+# lyr_compile_together(<target> [<file>...]): eight sources at a time, which take little more of the compiler's time than
+# one, but for those named: names that two sources of a room use for different things keep them apart. No source may rely
+# on it, and -DLYR_UNITY=OFF builds them one by one.
+function(lyr_compile_together target)
+  if(LYR_UNITY)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+    set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  endif()
+endfunction()
+
+# lyr_room(<library> [SMALL] SOURCES <file>... [FAST <file>...] [ALONE <file>...] [LINK <library>...] [PRIVATE <library>...])
 # Headers are included by their path from the root ("kernel/brep/model.h"); each room publishes only
 # its own folder, through a link in the build tree. SMALL rooms are what a board's program does now and then (options,
 # settings, reports): they are built for size, but for those of their sources that are FAST.
 function(lyr_room name)
-  cmake_parse_arguments(ROOM "SMALL" "" "SOURCES;FAST;LINK;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ROOM "SMALL" "" "SOURCES;FAST;ALONE;LINK;PRIVATE" ${ARGN})
   file(RELATIVE_PATH path ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
   set(published ${PROJECT_BINARY_DIR}/rooms/${name})
   get_filename_component(parent ${published}/${path} DIRECTORY)
@@ -58,6 +70,7 @@ function(lyr_room name)
       target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-Os>)
       set_property(SOURCE ${ROOM_FAST} APPEND PROPERTY COMPILE_OPTIONS $<$<CONFIG:Release>:-O2>)
     endif()
+    lyr_compile_together(${name} ${ROOM_ALONE})
     lyr_use_headers(${name})
   else()
     add_library(${name} INTERFACE)
@@ -66,14 +79,15 @@ function(lyr_room name)
   endif()
 endfunction()
 
-# lyr_test(<name> SOURCES <file>... LINK <library>...): one doctest program for one room.
+# lyr_test(<name> SOURCES <file>... [ALONE <file>...] LINK <library>...): one doctest program for one room.
 function(lyr_test name)
-  cmake_parse_arguments(TEST "" "" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(TEST "" "" "SOURCES;ALONE;LINK" ${ARGN})
   add_executable(${name} ${TEST_SOURCES})
   target_link_libraries(${name} PRIVATE ${TEST_LINK} lyr_flags lyr_test_flags lyr_test_main)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(${name} PRIVATE
     LYR_FIXTURES="${PROJECT_SOURCE_DIR}/fixtures" LYR_BUILD="${PROJECT_BINARY_DIR}")
+  lyr_compile_together(${name} ${TEST_ALONE})
   lyr_use_headers(${name})
   add_test(NAME ${name} COMMAND ${name})
   if(CMAKE_CURRENT_SOURCE_DIR MATCHES "^${PROJECT_SOURCE_DIR}/tests/(base|format|target)(/|$)")

@@ -11,10 +11,6 @@
 namespace lyr {
 namespace {
 
-Vector2 left_of(const Vector2& direction) {
-    return {-direction.y(), direction.x()};
-}
-
 Vector2 rotated(const Vector2& v, double angle) {
     const double c = std::cos(angle), s = std::sin(angle);
     return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};

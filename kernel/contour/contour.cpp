@@ -7,12 +7,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/constants.h"
 #include "kernel/geometry/tolerance.h"
 
 namespace lyr {
 namespace {
-
-constexpr double full_turn_rad = 2 * std::numbers::pi;
 
 // A run of segments that lie on one line or one circle.
 struct Run {

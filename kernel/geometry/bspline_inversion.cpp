@@ -163,9 +163,9 @@ Foot descend(const BSplineSurface& s, const Point3& point, const Point2& start) 
     return best;
 }
 
-class NearestPoint {
+class NearestOnSurface {
 public:
-    NearestPoint(const BSplineSurface& surface, const Point3& point, double enough_mm)
+    NearestOnSurface(const BSplineSurface& surface, const Point3& point, double enough_mm)
         : s_(surface), point_(point), enough_mm_(enough_mm) {}
 
     Point2 find() {
@@ -298,7 +298,7 @@ bool at_pole(const BSplineSurface& s, const Point2& uv) {
 }  // namespace
 
 Point2 invert(const BSplineSurface& surface, const Point3& point, double enough_mm) {
-    return NearestPoint(surface, point, enough_mm).find();
+    return NearestOnSurface(surface, point, enough_mm).find();
 }
 
 Point2 invert_near(const BSplineSurface& surface, const Point3& point, const Point2& guess) {

@@ -12,6 +12,14 @@ using Vector3 = Eigen::Vector3d;
 using Point2 = Eigen::Vector2d;
 using Vector2 = Eigen::Vector2d;
 
+// A quarter turn.
+inline Vector2 left_of(const Vector2& direction) {
+    return {-direction.y(), direction.x()};
+}
+inline Vector2 right_of(const Vector2& direction) {
+    return {direction.y(), -direction.x()};
+}
+
 // A local coordinate system. The axes are orthonormal; after a mirroring they are left-handed.
 struct Frame {
     Point3 origin = Point3::Zero();

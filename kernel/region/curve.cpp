@@ -12,11 +12,7 @@
 namespace lyr::region {
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
-Vector2 left_of(const Vector2& direction) {
-    return {-direction.y(), direction.x()};
-}
+using std::numbers::pi;
 
 // Where the curve runs parallel to an axis, strictly between its ends, from the start on.
 struct Turns {

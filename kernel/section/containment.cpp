@@ -6,13 +6,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/constants.h"
 #include "kernel/contour/arc.h"
 #include "kernel/section/face_outline.h"
 
 namespace lyr {
 namespace {
-
-constexpr double full_turn_rad = 2 * std::numbers::pi;
 
 // The signed turn from one point of a loop to the next, in the surface's first parameter.
 double turn_between(const Frame& frame, const Point3& a, const Point3& b) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/constants.h"
 #include "kernel/brep/parameter_loops.h"
 #include "kernel/brep/surface_foot.h"
 #include "kernel/geometry/tolerance.h"
@@ -12,8 +13,6 @@
 
 namespace lyr {
 namespace {
-
-constexpr double full_turn_rad = 2 * std::numbers::pi;
 
 // Steps that cut an edge into outline points: 48 a turn of a circle keeps them an eighth of a turn apart six times
 // over. A B-spline gets as many for each bend that its control points can make; long ones bend less between two.

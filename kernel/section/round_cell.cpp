@@ -11,12 +11,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/constants.h"
 #include "kernel/section/parameter_cell.h"
 
 namespace lyr {
 namespace {
 
-constexpr double full_turn_rad = 2 * std::numbers::pi, quarter_turn_rad = full_turn_rad / 4;
+constexpr double quarter_turn_rad = full_turn_rad / 4;
 
 using Interval = RoundCell::Interval;
 

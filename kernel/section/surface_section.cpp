@@ -7,10 +7,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/constants.h"
+
 namespace lyr {
 namespace {
-
-constexpr double full_turn_rad = 2 * std::numbers::pi;
 
 Point2 flat(const Vector3& v) {
     return v.head<2>();
@@ -18,10 +18,6 @@ Point2 flat(const Vector3& v) {
 
 double lean_of(const Vector3& axis) {
     return std::hypot(axis.x(), axis.y());
-}
-
-Vector2 left_of(const Vector2& v) {
-    return {-v.y(), v.x()};
 }
 
 SurfaceSection section_of_plane(const Plane& plane, bool same_sense) {

@@ -17,7 +17,7 @@
 namespace lyr {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 double cosine_about_axis(const TorusSection& torus, double v) {
     const double reach = torus.major_mm + torus.minor_mm * std::cos(v);

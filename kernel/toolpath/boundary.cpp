@@ -8,16 +8,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/constants.h"
 #include "kernel/geometry/tolerance.h"
 
 namespace lyr {
 namespace {
-
-constexpr double full_turn_rad = 2 * std::numbers::pi;
-
-Vector2 left_of(const Vector2& direction) {
-    return {-direction.y(), direction.x()};
-}
 
 BoundaryPiece piece_of(const FullCircle& circle, std::uint32_t contour) {
     const double turn = circle.counter_clockwise ? 1 : -1;

@@ -16,7 +16,7 @@
 namespace lyr {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 constexpr int directions = 36;
 // Over lines; half the angle between them makes a stretch longer by a hundredth.

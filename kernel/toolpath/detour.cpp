@@ -9,10 +9,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/constants.h"
+
 namespace lyr {
 namespace {
-
-constexpr double full_turn_rad = 2 * std::numbers::pi;
 
 // Bends beside an arc are no farther from it than this, besides their distance to the boundary.
 constexpr double arc_slack_mm = 0.1;
@@ -26,10 +26,6 @@ constexpr int most_questions = 100;
 constexpr int most_depth = 8;
 
 using Polyline = std::vector<Point2>;
-
-Vector2 left_of(const Vector2& direction) {
-    return {-direction.y(), direction.x()};
-}
 
 double length_of(const Polyline& line) {
     double length = 0;

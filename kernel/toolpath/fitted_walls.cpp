@@ -24,10 +24,6 @@ constexpr double most_corner_shifts = 4;
 // Shifts that differ by less are one: a step in the wall would be smaller than what is printed.
 constexpr double least_step_mm = 0.002;
 
-Vector2 left_of(const Vector2& direction) {
-    return {-direction.y(), direction.x()};
-}
-
 Vector2 tangent_at(const BoundaryPiece& piece, const Point2& point) {
     if (piece.curvature_per_mm == 0) return piece.start_tangent;
     const Point2 centre = piece.start + left_of(piece.start_tangent) / piece.curvature_per_mm;

@@ -16,7 +16,7 @@
 namespace lyr {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // The mean length of the curves of all heights, in an area whose sides are the period: as often the period as this.
 // Integrated numerically from the formulas above, to the last digit.

@@ -10,7 +10,7 @@
 namespace lyr {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // The lines of a cube pattern's faces move by this much of the height: faces of a cube on its corner have normals that
 // lean by atan(1/sqrt 2) out of the plane.

@@ -29,10 +29,6 @@ constexpr double least_product = 1e-14;
 
 constexpr double none_mm = -1;
 
-Vector2 left_of(const Vector2& direction) {
-    return {-direction.y(), direction.x()};
-}
-
 double signed_angle(const Vector2& from, const Vector2& to) {
     return std::atan2(cross(from, to), from.dot(to));
 }

@@ -18,7 +18,7 @@
 namespace lyr {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // In the tolerance. The result's boundary is looked for where a disc of this radius lies in the offset and touches its
 // boundary: it may be off by one there, and where the disc fits is no sliver.
@@ -39,10 +39,6 @@ constexpr double smooth_rad = 1e-3;
 // where contours touch, each is on the other's wrong side.
 constexpr double probe_share = 2;
 constexpr double clear_share = 4;
-
-Vector2 right_of(const Vector2& direction) {
-    return {direction.y(), -direction.x()};
-}
 
 class Check {
 public:

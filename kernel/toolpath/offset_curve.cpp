@@ -9,17 +9,12 @@
 #include <numbers>
 #include <optional>
 
+#include "base/constants.h"
 #include "kernel/geometry/tolerance.h"
 #include "kernel/region/curve.h"
 
 namespace lyr {
 namespace {
-
-constexpr double full_turn_rad = 2 * std::numbers::pi;
-
-Vector2 right_of(const Vector2& direction) {
-    return {direction.y(), -direction.x()};
-}
 
 // A segment and its parallel.
 struct Side {

@@ -10,10 +10,6 @@
 namespace lyr {
 namespace {
 
-Vector2 right_of(const Vector2& direction) {
-    return {direction.y(), -direction.x()};
-}
-
 // Around a path that winds clockwise, the other way.
 Path counter_clockwise(Path path) {
     if (area_mm2(Contour(path)) > 0) return path;

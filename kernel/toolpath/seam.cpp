@@ -10,12 +10,11 @@
 #include <numbers>
 #include <optional>
 
+#include "base/constants.h"
 #include "kernel/region/curve.h"
 
 namespace lyr {
 namespace {
-
-constexpr double full_turn_rad = 2 * std::numbers::pi;
 
 // In widths of the line. A corner with the rounding that an offset by half the width made of it is no longer than this
 // up to a turn of 140 degrees.

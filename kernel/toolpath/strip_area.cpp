@@ -9,7 +9,7 @@
 namespace lyr {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 double beside_mm2(const BoundaryPiece& piece, double distance_mm) {
     const double turned = distance_mm > 0 ? piece.curvature_per_mm : -piece.curvature_per_mm;

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <thread>
 
+#include "base/constants.h"
 #include "base/text.h"
 #include "target/gpio/gpiod_chip.h"
 #include "target/run/line_layout.h"
@@ -17,7 +18,6 @@
 namespace lyr::board {
 namespace {
 
-constexpr double ns_per_s = 1e9;
 constexpr double ns_per_us = 1e3;
 
 // Longer than MonotonicClock stays awake for: the thread sleeps.

@@ -6,6 +6,7 @@
 #include <limits>
 #include <string_view>
 
+#include "base/constants.h"
 #include "base/text.h"
 #include "target/config/key_rules.h"
 
@@ -128,7 +129,6 @@ double fastest_motor_mm_s(const Printer& printer, std::size_t motor) {
 }
 
 double held_steps_per_s(const Printer& printer) {
-    constexpr double ns_per_s = 1e9;
     if (!printer.timing.late_ns) return std::numeric_limits<double>::infinity();
     const PulseTiming& pulse = printer.pulse;
     const std::int64_t edge_gap_ns =

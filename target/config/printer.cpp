@@ -14,6 +14,7 @@
 #include <memory>
 #include <set>
 
+#include "base/constants.h"
 #include "base/nearest_name.h"
 #include "target/config/homing_keys.h"
 #include "target/config/keys.h"
@@ -218,7 +219,6 @@ void Walk::check_calibration() {
 }
 
 void Walk::check_pulses() {
-    constexpr double ns_per_s = 1e9;
     const PulseTiming& pulse = draft_.printer.pulse;
     const auto needed_ns = static_cast<double>(pulse.high_ns + pulse.low_ns);
     for (std::size_t i = 0; i < axis_count; ++i) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "base/text.h"
 #include "target/gpio/gpiod_chip.h"
 #include "target/gpio/gpiod_inputs.h"
@@ -12,8 +13,6 @@
 
 namespace lyr::home {
 namespace {
-
-constexpr double ns_per_s = 1e9;
 
 Diagnostic refused(std::string message) {
     return {Severity::error, ExitStatus::machine, std::move(message), {}};

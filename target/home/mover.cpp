@@ -5,6 +5,7 @@
 #include <cmath>
 #include <thread>
 
+#include "base/constants.h"
 #include "target/moves/move_maker.h"
 #include "target/run/event_stream.h"
 #include "target/run/motor_steps.h"
@@ -13,7 +14,6 @@
 namespace lyr::home {
 namespace {
 
-constexpr double ns_per_s = 1e9;
 // How long an edge of a contact may wait until it is looked at: the machine runs on meanwhile.
 constexpr std::int64_t look_ns = 1'000'000;
 

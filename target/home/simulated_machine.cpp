@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "base/constants.h"
 #include "target/moves/machine.h"
 #include "target/run/line_layout.h"
 
@@ -12,7 +13,6 @@ namespace {
 
 using config::axis_x, config::axis_y, config::axis_z;
 
-constexpr double ns_per_s = 1e9;
 constexpr double ns_per_ms = 1e6;
 // A contact that bounces opens and closes so often.
 constexpr double bounce_ms = 0.2;

@@ -7,7 +7,7 @@
 namespace lyr::motion {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 MotorPath even(double from_mm, double to_mm, double length_mm, double origin_mm,
                double steps_per_mm) {

@@ -13,7 +13,7 @@
 namespace lyr::motion {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // On an arc this share of the weaker axis's acceleration is kept for changing speed; 0.8 is then

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/constants.h"
+
 namespace lyr::motion {
 namespace {
 
-constexpr double ns_per_s = 1e9;
 constexpr std::int64_t forever_ns = std::numeric_limits<std::int64_t>::max();
 // What is left of a phase when it is as good as over: the rounding of a day in seconds, and a thousandth
 // of what a step's time is rounded to.

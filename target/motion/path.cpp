@@ -8,7 +8,7 @@
 namespace lyr::motion {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // Of sagitta to half chord: below this the arc's middle is off the chord by less than the rounding
 // of the chord itself.

@@ -8,10 +8,11 @@
 #include <numbers>
 #include <string>
 
+#include "base/constants.h"
+
 namespace lyr::motion {
 namespace {
 
-constexpr double ns_per_s = 1e9;
 // Of the ring, that goes out at once when nothing in it is final: few passes over it per move.
 constexpr std::size_t share_to_release = 4;
 

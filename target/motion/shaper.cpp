@@ -6,11 +6,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/constants.h"
+
 namespace lyr::motion {
 namespace {
 
-constexpr double pi = std::numbers::pi;
-constexpr double ns_per_s = 1e9;
+using std::numbers::pi;
 
 struct Impulse {
     double delay_s = 0, weight = 0;

@@ -5,10 +5,11 @@
 
 #include <algorithm>
 
+#include "base/constants.h"
+
 namespace lyr::motion {
 namespace {
 
-constexpr double ns_per_s = 1e9;
 constexpr std::int64_t never_ns = std::numeric_limits<std::int64_t>::max();
 
 }  // namespace

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/constants.h"
+
 namespace lyr::run {
 namespace {
 
@@ -34,7 +36,6 @@ Diagnostic too_late(std::int64_t late_ns, std::int64_t limit_ns) {
 }  // namespace
 
 ExecutorTiming executor_timing(const config::Printer& printer) {
-    constexpr double ns_per_s = 1e9;
     const config::PulseTiming& pulse = printer.pulse;
     double longest_s = 0;
     for (const config::Axis& axis : printer.axes)

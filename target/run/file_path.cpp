@@ -15,7 +15,7 @@ using config::axis_x;
 using config::axis_y;
 using config::axis_z;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 double length_mm(const PathCurve& curve) {
     const double rise = curve.to_mm[axis_z] - curve.from_mm[axis_z];

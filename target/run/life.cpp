@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "base/text.h"
 #include "target/run/demands.h"
 
@@ -332,7 +333,6 @@ PrintState Life::state() const {
 }
 
 void Life::publish(PrintState state, bool is_position_known) {
-    constexpr double ns_per_s = 1e9;
     const motion::Point head = this->head();
     const HeatNow heat = desk_.now();
     PrintStatus status;

@@ -15,7 +15,7 @@ using config::axis_e;
 using config::axis_x;
 using config::axis_y;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 // Of angles in double precision, in turns.
 constexpr double rounding_turns = 1e-12;
 // Of shares of a curve that were computed from different ones: far below a step on the longest curve.

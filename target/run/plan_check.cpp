@@ -6,10 +6,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/constants.h"
+
 namespace lyr::run {
 namespace {
-
-constexpr double ns_per_s = 1e9;
 
 double coordinate(const motion::Point& point, std::size_t axis) {
     return axis == motion::axis_x ? point.x : axis == motion::axis_y ? point.y : point.z;

@@ -11,6 +11,7 @@
 #include <optional>
 #include <thread>
 
+#include "base/constants.h"
 #include "base/text.h"
 #include "target/gpio/gpiod_chip.h"
 #include "target/gpio/gpiod_inputs.h"
@@ -34,7 +35,6 @@ constexpr std::chrono::microseconds executor_nap{50};
 // How soon a command is served.
 constexpr int signal_wait_ms = 20;
 constexpr double progress_s = 0.1;
-constexpr double ns_per_s = 1e9;
 constexpr double ns_per_us = 1e3;
 
 // What the threads share.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/constants.h"
 #include "base/text.h"
 #include "target/motion/time_walk.h"
 #include "target/run/simulate.h"
@@ -15,7 +16,6 @@ using config::axis_count;
 using config::axis_names;
 
 constexpr double half_step = 0.5;
-constexpr double ns_per_s = 1e9;
 constexpr double ns_per_us = 1e3;
 // Of positions in double precision, in steps: far above rounding, far below anything a motor does.
 constexpr double rounding_steps = 1e-6;

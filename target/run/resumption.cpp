@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "base/constants.h"
 #include "base/text.h"
 #include "target/run/inspect.h"
 
@@ -53,7 +54,6 @@ config::Printer lifted(const config::Printer& printer, const Resumption& resumpt
 }
 
 std::string text_of(const Resumption& resumption, const std::string& file) {
-    constexpr double ns_per_s = 1e9;
     return formatted(
         "%s was cut off in layer %u of %u, %.0f s into the print, the head at z %.3f mm%s\n",
         file.c_str(), resumption.first_layer + 1, resumption.entry.layers,

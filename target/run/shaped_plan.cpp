@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
+
 namespace lyr::run {
 namespace {
-
-constexpr double ns_per_s = 1e9;
 
 // How far before and after the time of the plan the taps look.
 struct Reach {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "base/constants.h"
 #include "base/text.h"
 #include "target/gpio/tracing_chip.h"
 #include "target/run/demands.h"
@@ -18,8 +19,6 @@
 
 namespace lyr::run {
 namespace {
-
-constexpr double ns_per_s = 1e9;
 
 // Progress and stop are asked for after so many batches of events.
 constexpr std::uint64_t batches_between_questions = 64;

@@ -1,9 +1,10 @@
 #include "target/run/simulated_clock.h"
 
+#include "base/constants.h"
+
 namespace lyr::run {
 
 std::int64_t SimulatedClock::wait_until_ns(std::int64_t time_ns) {
-    constexpr double ns_per_s = 1e9;
     for (; next_tick_ns_ <= time_ns; next_tick_ns_ += tick_ns) {
         clock_.wait_until_ns(next_tick_ns_);
         const double time_s = static_cast<double>(next_tick_ns_) / ns_per_s;

@@ -2,13 +2,13 @@
 
 #include "target/run/step_stream.h"
 
+#include "base/constants.h"
 #include "target/run/inspect.h"
 
 namespace lyr::run {
 namespace {
 
 constexpr std::size_t batch_events = 2048;
-constexpr double ns_per_s = 1e9;
 // Orders that stand between the moves of a full planner are fewer, but for a file that means harm.
 constexpr std::size_t most_waiting = 4 * motion::Planner::default_capacity;
 

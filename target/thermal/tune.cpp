@@ -10,7 +10,7 @@
 namespace lyr::thermal {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 // The powers never come closer to off or full than this, so that the heater still answers both ways.
 constexpr double least_swing = 0.05;
 

@@ -15,7 +15,7 @@
 
 namespace lyr::testing {
 
-inline constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 struct Use {
     EdgeId edge;

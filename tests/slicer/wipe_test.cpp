@@ -18,7 +18,7 @@ using namespace lyr::slicer;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 double length_of(const Path& path) {
     double sum_mm = 0;

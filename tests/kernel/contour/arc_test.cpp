@@ -9,7 +9,7 @@ using namespace lyr;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // Arcs of every size and direction, from nearly straight to nearly full.
 template <class Check>

@@ -8,7 +8,7 @@ using namespace lyr;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double allowed_mm = 1e-4;
 
 Path square() {

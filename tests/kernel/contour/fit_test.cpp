@@ -9,7 +9,7 @@ using namespace lyr;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 PlaneCurve ellipse(double a, double b) {
     return [=](double t) {

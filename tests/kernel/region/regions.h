@@ -13,7 +13,7 @@
 
 namespace lyr::testing {
 
-inline constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 using Contours = std::vector<Contour>;
 

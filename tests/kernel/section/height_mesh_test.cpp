@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "kernel/geometry/random_surfaces.h"
 
@@ -12,7 +13,7 @@ using namespace lyr;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 HeightMesh mesh_of(const BSplineSurface& surface) {
     return height_mesh(std::make_shared<const BSplineSurface>(surface));

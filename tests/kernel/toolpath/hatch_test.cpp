@@ -9,7 +9,7 @@ using namespace lyr;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 double covered_mm2(const Hatch& hatch) {
     double length = 0;

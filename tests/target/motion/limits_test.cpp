@@ -12,7 +12,7 @@
 namespace lyr::motion {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double rounding = 1 + 1e-12;
 
 // The largest acceleration of an axis of the plane anywhere on an arc, at the move's top speed and

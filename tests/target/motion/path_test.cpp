@@ -9,7 +9,7 @@
 namespace lyr::motion {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 double distance(const Point& a, const Point& b) {
     return std::hypot(b.x - a.x, b.y - a.y, b.z - a.z);

@@ -16,7 +16,7 @@ using test::even_limits;
 using test::Job;
 using test::plan_of;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 // Of squared speeds, relative.
 constexpr double rounding = 1e-9;
 

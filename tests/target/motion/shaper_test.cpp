@@ -18,7 +18,7 @@ using test::Job;
 using test::MotorStep;
 using test::TimedRun;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 struct Spring {
     double frequency_hz, damping;

@@ -22,7 +22,7 @@ using test::Run;
 using test::run;
 using test::steps_of;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 // Contract 2.
 constexpr Real exact_ns = 1000;
 

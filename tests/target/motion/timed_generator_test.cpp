@@ -20,7 +20,7 @@ using test::steps_of;
 using test::timed_run;
 using test::TimedRun;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 // Contract 2.
 constexpr Real exact_ns = 1000;
 // In the nanosecond that times are rounded to a motor at 300 mm/s and 800 steps/mm, twice as fast on

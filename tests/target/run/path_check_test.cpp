@@ -15,7 +15,7 @@ using namespace lyr::run;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 const AxisValues steps_per_mm{80, 100, 400, 96};
 const AxisValues origin_mm{0, 0, 0, 0};
 
