@@ -1,8 +1,8 @@
+#include "kernel/contour/contour.h"
+
 #include <doctest/doctest.h>
 
 #include <numbers>
-
-#include "kernel/contour/contour.h"
 
 using namespace lyr;
 
