@@ -5,6 +5,7 @@
 
 #include "apps/files.h"
 #include "apps/signal_watch.h"
+#include "base/file_place.h"
 #include "base/read_text.h"
 #include "base/replace_file.h"
 #include "base/text.h"
@@ -16,22 +17,36 @@
 namespace lyr::command_line {
 namespace {
 
-std::span<const std::byte> bytes_of(const std::string& text) {
-    return std::as_bytes(std::span(text.data(), text.size()));
+Diagnostic other_file(const std::string& path) {
+    return {Severity::error, ExitStatus::input, format::no_print, {.file = path}};
 }
 
-Result<std::string> read_print(const std::string& path) {
-    const auto wrong = [](std::string_view head) -> std::optional<std::string> {
-        const bool fits = head.empty() || format::is_print(std::as_bytes(std::span(head)));
-        return fits ? std::nullopt : std::optional<std::string>(format::no_print);
+// A file is looked at piece by piece; what comes from a stream is held as a whole.
+Result<format::FileView> view_of(const std::string& path, std::string& held) {
+    const auto fits = [](std::span<const std::byte> head) {
+        return head.empty() || format::is_print(head);
     };
-    return read_text(path, most_readable_bytes(path), {format::print_head_bytes, wrong});
+    if (path != "-" && is_regular_file(path)) {
+        auto view = format::FileView::open(path);
+        if (view && !fits(view->at(0, format::print_head_bytes))) return other_file(path);
+        return view;
+    }
+    const auto wrong = [&](std::string_view head) -> std::optional<std::string> {
+        return fits(std::as_bytes(std::span(head))) ? std::nullopt
+                                                    : std::optional(std::string(format::no_print));
+    };
+    auto text = read_text(path, most_readable_bytes(path), {format::print_head_bytes, wrong});
+    if (!text) return text.error();
+    held = std::move(*text);
+    return format::FileView(std::as_bytes(std::span(held)));
 }
 
 Status verify_print(const std::string& path) {
-    const auto file = read_print(path);
+    std::string held;
+    auto file = view_of(path, held);
     if (!file) return file.error();
-    const format::Verification verification = format::verify(bytes_of(*file));
+    const format::Verification verification = format::verify(*file);
+    if (file->error()) return *file->error();
     const std::string name = input_name(path);
     if (const Status told = tell(format::to_text(verification, name)); !told) return told;
     if (verification.findings.empty()) return Done{};
@@ -39,11 +54,13 @@ Status verify_print(const std::string& path) {
 }
 
 Status repair_print(const std::string& path, const std::string& output) {
-    const auto file = read_print(path);
+    std::string held;
+    auto file = view_of(path, held);
     if (!file) return file.error();
     const std::string name = input_name(path);
-    const format::Verification verification = format::verify(bytes_of(*file));
-    const auto repaired = format::repair(bytes_of(*file), verification, name, output);
+    const format::Verification verification = format::verify(*file);
+    if (file->error()) return *file->error();
+    const auto repaired = format::repair(*file, verification, name, output);
     if (!repaired) return repaired.error();
     std::string text;
     if (verification.findings.empty())

@@ -7,7 +7,7 @@
 enum { metadata_block = 1, layer_block, chunk_block, index_block, end_block };
 enum { due_first = 1 << layer_block | 1 << index_block };  // a bit for each type
 enum { helix_code = 0x44, grid_code = 0x46, smooth_run = 0x48, parallel_run, repeated_run };
-enum { head_bytes = 4, end_bytes = 36, longest_payload = 65528, skippable = 0xf0 };
+enum { head_bytes = 4, crc_bytes = 4, end_bytes = 36, longest_payload = 65528, skippable = 0xf0 };
 static const uint32_t right_crc = 0xb798b438;  // of any bytes with their CRC behind them
 static const int64_t widest = INT64_C(1) << 57, row_limit = INT64_C(1) << 32;
 static const int64_t farthest_beside = INT64_C(1) << 36, unit = INT64_C(1) << 30;
@@ -15,9 +15,7 @@ static const int64_t hatch_limit = INT64_C(3) << 30, offset_limit = INT64_C(3) <
 
 static bool fine(const lyr_reader* r) { return r->status == LYR_OK; }
 static uint64_t left_of(const lyr_reader* r) { return (uint64_t)(r->end - r->at.cursor); }
-static uint64_t place(const lyr_reader* r) {
-    return r->offset + head_bytes + (uint64_t)(r->at.cursor - r->buffer);
-}
+static uint64_t place(const lyr_reader* r) { return r->behind - crc_bytes - left_of(r); }
 
 static bool fail(lyr_reader* r, lyr_status status) {
     if (fine(r) && r->in_chunk) r->offset = place(r);
@@ -29,22 +27,16 @@ static bool fail(lyr_reader* r, lyr_status status) {
 static bool check(lyr_reader* r, bool right) {
     return (right && !r->too_large) || fail(r, LYR_NONSENSE);
 }
-static bool fail_at_end(lyr_reader* r) {
-    r->at.cursor = r->end;
-    return fail(r, LYR_NONSENSE);
+// Where there are fewer bytes, the error is at their end.
+static bool pass(lyr_reader* r, uint64_t bytes) {
+    const bool there = bytes <= left_of(r);
+    r->at.cursor = there ? r->at.cursor + bytes : r->end;
+    return there || fail(r, LYR_NONSENSE);
 }
 
 static int64_t within(lyr_reader* r, int64_t value, int64_t limit) {
     r->too_large |= value < -limit || value > limit;
     return r->too_large ? 0 : value;
-}
-static int32_t coordinate(lyr_reader* r, int64_t value) {
-    return (int32_t)within(r, value, INT32_MAX);
-}
-
-// value / 2^bits to the nearest whole number, halves up.
-static int64_t rounded(int64_t value, int bits) {
-    return (value + (INT64_C(1) << (bits - 1))) >> bits;
 }
 
 static uint64_t get_fixed(const uint8_t* at, unsigned bytes) {
@@ -60,33 +52,33 @@ static uint32_t crc32c(const lyr_reader* r, uint32_t crc, const uint8_t* bytes, 
 }
 
 static uint8_t get_byte(lyr_reader* r) {
-    return left_of(r) > 0 || fail_at_end(r) ? *r->at.cursor++ : 0;
+    return left_of(r) > 0 || pass(r, 1) ? *r->at.cursor++ : 0;
 }
-
 static uint64_t get_varint(lyr_reader* r) {
     uint64_t value = 0, next = 0x80;
     for (int shift = 0; shift < 64 && next >= 0x80; shift += 7) {
         next = get_byte(r);
-        if (shift == 63 && next > 1) return fail_at_end(r);
+        if (shift == 63 && next > 1) return pass(r, UINT64_MAX);
         value |= (next & 0x7f) << shift;
     }
     return value;
 }
-
 static int64_t unzigzag(uint64_t value) { return (int64_t)(value >> 1) ^ -(int64_t)(value & 1); }
 static int64_t get_signed(lyr_reader* r) { return within(r, unzigzag(get_varint(r)), widest); }
-
 static uint32_t get_setting(lyr_reader* r) {
     const uint64_t value = get_varint(r);
     r->too_large |= value > UINT32_MAX;
     return (uint32_t)value;
 }
 
+static lyr_point point(lyr_reader* r, int64_t x, int64_t y, int64_t z) {
+    x = within(r, x, INT32_MAX);
+    y = within(r, y, INT32_MAX);
+    return (lyr_point){(int32_t)x, (int32_t)y, (int32_t)within(r, z, INT32_MAX)};
+}
 static lyr_point get_point(lyr_reader* r, lyr_point from, bool climbs) {
-    from.x = coordinate(r, from.x + get_signed(r));
-    from.y = coordinate(r, from.y + get_signed(r));
-    if (climbs) from.z = coordinate(r, from.z + get_signed(r));
-    return from;
+    const int64_t x = get_signed(r), y = get_signed(r), z = climbs ? get_signed(r) : 0;
+    return point(r, from.x + x, from.y + y, from.z + z);
 }
 
 // Blocks.
@@ -100,32 +92,28 @@ static bool read_bytes(lyr_reader* r, uint8_t* to, uint32_t count) {
     return true;
 }
 
-static bool read_head(lyr_reader* r) {
-    if (r->has_head || !fine(r)) return fine(r);
+// Reads and checks a block, and tells whether it is one that is due. That must be whole in the
+// buffer, but for the index.
+static bool read_block(lyr_reader* r) {
+    uint8_t crc[crc_bytes];
     r->offset = r->behind;
-    r->crc = UINT32_MAX;
-    r->has_head = read_bytes(r, r->buffer, head_bytes);
+    r->crc = r->index_crc = UINT32_MAX;
+    if (!read_bytes(r, r->buffer, head_bytes)) return false;
     r->type = r->buffer[0];
     r->length = (uint32_t)get_fixed(r->buffer + 1, 3);
-    return r->has_head;
-}
-
-// Reads and checks the block; one that is to be used must be whole in the buffer.
-static bool read_payload(lyr_reader* r, bool whole) {
-    uint8_t crc[4];
-    r->has_head = false;
-    r->index_crc = UINT32_MAX;
-    if (whole && r->length > r->capacity) return fail(r, LYR_TOO_LONG);
+    const bool known = r->type > 0 && r->type <= end_block, due = known && r->due >> r->type & 1;
+    const uint32_t whole = due && r->type != index_block ? r->length : 0;
+    check(r, due || r->due != 1 << metadata_block);
+    if (whole > r->capacity) return fail(r, LYR_TOO_LONG);
     for (uint32_t left = r->length, count; left > 0; left -= count) {
         count = left < r->capacity ? left : r->capacity;
         if (!read_bytes(r, r->buffer, count)) return false;
         if (r->type == index_block) r->index_crc = crc32c(r, r->index_crc, r->buffer, count);
-        if (r->source.extra && (r->type >= 0x80 || r->type == metadata_block))
-            r->source.extra(r->source.user, r->type, r->buffer, count, left - count);
     }
     r->at.cursor = r->buffer;
-    r->end = r->buffer + (whole ? r->length : 0);
-    return (read_bytes(r, crc, sizeof crc) && r->crc == right_crc) || fail(r, LYR_DAMAGED);
+    r->end = r->buffer + whole;
+    if (!read_bytes(r, crc, crc_bytes) || r->crc != right_crc) return fail(r, LYR_DAMAGED);
+    return due || (r->type < 0x80 && fail(r, known ? LYR_NONSENSE : LYR_UNSUPPORTED));
 }
 
 static uint32_t get_settings(lyr_reader* r, lyr_setting* settings, uint32_t most, bool heaters) {
@@ -140,7 +128,7 @@ static uint32_t get_settings(lyr_reader* r, lyr_setting* settings, uint32_t most
     return (uint32_t)count;
 }
 
-static void begin_layer(lyr_reader* r, lyr_operation* o) {
+static bool begin_layer(lyr_reader* r, lyr_operation* o) {
     lyr_layer* l = &r->layer;
     uint32_t* const settings[] = {&l->thickness,      &l->travel_speed,  &l->travel_acceleration,
                                   &l->tool,           &l->object,        &l->retracted,
@@ -152,77 +140,65 @@ static void begin_layer(lyr_reader* r, lyr_operation* o) {
     l->heater_count = get_settings(r, l->heaters, 16, true);
     l->fan_count = get_settings(r, l->fans, 8, false);
     l->time = get_varint(r);
-    l->chunks = get_setting(r);
-    l->operations = get_varint(r);
+    r->chunks += l->chunks = get_setting(r);
+    r->operations += l->operations = get_varint(r);
     l->low = get_point(r, l->start, true);
     l->high = get_point(r, l->low, true);
     l->extruded = get_varint(r);
     l->travelled = get_varint(r);
     l->volume = get_varint(r);
-    check(r, l->extruded <= INT64_MAX && l->travelled <= INT64_MAX);
-    check(r, l->index == r->layers++);
-    if (fine(r) && l->chunks == 0) r->whole_layers = r->layers;
     for (int i = 0; i < 64; i += 8) *crc = *crc >> 8 ^ r->crc_table[(*crc ^ r->offset >> i) & 0xff];
     r->style = (lyr_style){.flow = 100000};
     r->at = (struct lyr_place){.cursor = r->end, .head = l->start};
     r->decoder = (struct lyr_decoder){0};
     r->due = due_first | 1 << chunk_block;
-    *o = (lyr_operation){.kind = LYR_LAYER, .number = l->index, .offset = r->offset};
-    o->to = l->start;
+    *o = (lyr_operation){LYR_LAYER, .number = l->index, .to = l->start, .offset = r->offset};
+    return check(r, (l->extruded | l->travelled) <= INT64_MAX && l->index == r->layers++);
 }
 
-static void begin_chunk(lyr_reader* r) {
+// Of the next block. Whether a layer begins, which is given out.
+static bool take_block(lyr_reader* r, lyr_operation* o) {
     struct lyr_decoder* d = &r->decoder;
-    const uint64_t layer = get_varint(r), chunk = get_varint(r);
-    d->left = get_varint(r);
-    check(r, layer == r->layer.index && chunk == d->chunks++ && chunk < r->layer.chunks);
-    d->operations += d->left;
-    r->operations += d->left;
-    ++r->chunks;
-    r->in_chunk = true;
-}
-
-static void end_file(lyr_reader* r) {
+    const bool within_layer = r->due >> chunk_block & 1;
+    if (within_layer && d->chunks == r->layer.chunks) r->whole_layers = r->layers;
+    if (!read_block(r)) return false;
+    if (r->type == chunk_block) {
+        const uint64_t layer = get_varint(r), chunk = get_varint(r);
+        d->operations += d->left = get_varint(r);
+        check(r, layer == r->layer.index && chunk == d->chunks++ && chunk < r->layer.chunks);
+        r->in_chunk = fine(r);
+        return false;
+    }
+    if (within_layer)
+        check(r, d->chunks == r->layer.chunks && d->operations == r->layer.operations);
+    if (r->type == layer_block) return fine(r) && begin_layer(r, o);
+    if (r->type == index_block) {
+        r->index_offset = r->offset;
+        r->due = 1 << end_block;
+        check(r, r->sought || (r->index_crc == r->offsets_crc && r->length == 8ull * r->layers));
+        return false;
+    }
     const uint64_t stated[] = {r->chunks, r->operations, r->behind, r->index_offset};
     bool right = r->length == end_bytes && get_fixed(r->buffer, 4) == r->layers;
     for (int i = r->sought ? 2 : 0; i < 4; ++i)
         right &= get_fixed(r->buffer + 4 + 8 * i, 8) == stated[i];
-    if (!check(r, right)) return;
+    if (!check(r, right)) return false;
     r->offset = r->behind;
     check(r, !read_bytes(r, r->buffer, 1));
     if (r->status == LYR_CUT_SHORT) r->status = LYR_END;
-}
-
-// Whether a layer begins, which is given out.
-static bool read_block(lyr_reader* r, lyr_operation* o) {
-    const struct lyr_decoder* d = &r->decoder;
-    const uint8_t type = r->type;
-    const bool known = type > 0 && type <= end_block, used = known && r->due >> type & 1;
-    if (!read_payload(r, used && type != index_block)) return false;
-    if (!used) return type < 0x80 && fail(r, known ? LYR_NONSENSE : LYR_UNSUPPORTED);
-    if (type != chunk_block && r->due >> chunk_block & 1)
-        check(r, d->chunks == r->layer.chunks && d->operations == r->layer.operations);
-    if (!fine(r)) return false;
-    if (type == layer_block) begin_layer(r, o);
-    if (type == chunk_block) begin_chunk(r);
-    if (type == end_block) end_file(r);
-    if (type != index_block) return fine(r) && type == layer_block;
-    r->index_offset = r->offset;
-    r->due = 1 << end_block;
-    check(r, r->sought || (r->index_crc == r->offsets_crc && r->length == 8ull * r->layers));
     return false;
 }
 
 // Motions. What takes a step returns whether there is something to give out.
 
-// |s| <= 1.25 chords: (4 s)^2 <= (5 x)^2 + (5 y)^2. Doubles, which are off by less than 2^24,
-// decide all but what is so near that the low 64 bits of the squares do.
+// |s| <= 1.25 chords. Doubles, off by less than 2^24, decide all but what is so near that the low
+// 64 bits do.
+static uint64_t square(int64_t value) { return (uint64_t)value * (uint64_t)value; }
 static bool is_arc(int64_t s, int64_t x, int64_t y) {
     static const double near = 1099511627776.0;  // 2^40
-    const double a = 4 * (double)s, b = 5 * (double)x, c = 5 * (double)y;
-    const uint64_t u = 4 * (uint64_t)s, v = 5 * (uint64_t)x, w = 5 * (uint64_t)y;
-    const double over = a * a - b * b - c * c;
-    const uint64_t low = u * u - v * v - w * w;
+    const double a = (double)s, b = (double)x, c = (double)y;
+    const double over = 16 * a * a - 25 * (b * b + c * c);
+    const uint64_t low = 16 * square(s) - 25 * (square(x) + square(y));
     return over < -near || (over <= near && (low == 0 || low >> 63));
 }
 
@@ -230,13 +206,14 @@ static bool is_arc(int64_t s, int64_t x, int64_t y) {
 static bool move(lyr_reader* r, lyr_operation* o, lyr_kind kind) {
     const lyr_point from = o->from = r->at.head, to = r->at.head = o->to;
     const int64_t x = (int64_t)to.x - from.x, y = (int64_t)to.y - from.y, s = o->sagitta;
-    const bool moves = x != 0 || y != 0 || to.z != from.z, draws = kind <= LYR_ARC;
+    const bool moves = x != 0 || y != 0 || to.z != from.z || kind == LYR_CIRCLE;
+    const bool draws = kind <= LYR_ARC;
     o->kind = kind;
     check(r, r->decoder.has_path || !(draws || kind == LYR_CIRCLE));
     check(r, s == 0 ? kind != LYR_ARC : is_arc(s, x, y));
     if (moves && draws && !o->hatch && !(r->decoder.code & 0x20))
         r->history[r->decoder.motions++ % LYR_HISTORY] =
-            (lyr_motion){from.x, from.y, to.x, to.y, s};
+            (struct lyr_motion){from.x, from.y, to.x, to.y, s};
     return moves && fine(r);
 }
 
@@ -244,20 +221,22 @@ static bool take_motion(lyr_reader* r, lyr_operation* o) {
     const uint8_t code = r->decoder.code;
     const bool run = code < LYR_TRAVEL, wipes = code == LYR_WIPE;
     const bool climbs = run ? code & 0x20 : code == LYR_TRAVEL + 1 || (code & ~1) == helix_code;
-    const lyr_point head = r->at.head;
+    const lyr_point head = r->at.head, to = o->to = get_point(r, head, climbs);
     --r->at.left;
-    o->to = get_point(r, head, climbs);
     if (wipes || (run && code & 0x10)) o->sagitta = get_signed(r);
-    if (run) return move(r, o, code & 0x10 ? LYR_ARC : LYR_LINE);
-    o->value = wipes ? r->depth : 0;
-    o->way = wipes ? r->way : 0;
-    if (code < LYR_CIRCLE || wipes) return move(r, o, wipes ? LYR_WIPE : LYR_TRAVEL);
-    o->center_x = o->to.x;
-    o->center_y = o->to.y;
+    if (run) return move(r, o, code & 0x10);
+    if (code < LYR_CIRCLE) return move(r, o, LYR_TRAVEL);
+    if (wipes) {
+        o->value = r->depth;
+        o->way = r->way;
+        return move(r, o, LYR_WIPE);
+    }
+    o->center_x = to.x;
+    o->center_y = to.y;
     o->counter_clockwise = code % 2 == 0;
-    check(r, o->to.x != head.x || o->to.y != head.y);
-    o->to = (lyr_point){head.x, head.y, o->to.z};
-    return move(r, o, LYR_CIRCLE) || fine(r);
+    o->to = (lyr_point){head.x, head.y, to.z};
+    check(r, to.x != head.x || to.y != head.y);
+    return move(r, o, LYR_CIRCLE);
 }
 
 // Of 0 or at least 1: Newton's way from a root that is off by 6 % at most, and the nearest of its
@@ -282,12 +261,9 @@ static double square_root(double value) {
 static double length_of(const lyr_operation* o) {
     static const double flat = 1e-10;  // of a slope's square: what the length is off by
     const double x = (double)o->to.x - o->from.x, y = (double)o->to.y - o->from.y;
-    double length = square_root(x * x + y * y), slope = 2 * (double)o->sagitta / length;
-    while (slope * slope > flat) {
-        const double longer = square_root(1 + slope * slope);
-        length *= longer;
-        slope /= 1 + longer;
-    }
+    double length = square_root(x * x + y * y), slope = 2 * (double)o->sagitta / length, longer;
+    for (; slope * slope > flat; slope /= 1 + longer)
+        length *= longer = square_root(1 + slope * slope);
     return length;
 }
 
@@ -319,8 +295,7 @@ static uint64_t bits_ahead(const lyr_reader* r) {
 
 static void pass_bits(lyr_reader* r, unsigned count) {
     const unsigned behind = r->decoder.bit + count;
-    if (behind > 8 * left_of(r)) fail_at_end(r);
-    if (fine(r)) r->at.cursor += behind / 8;
+    if (pass(r, (behind + 7) / 8)) r->at.cursor -= behind % 8 > 0;
     r->decoder.bit = behind % 8;
 }
 
@@ -328,8 +303,7 @@ static int64_t get_difference(lyr_reader* r, unsigned order) {
     const uint64_t ahead = bits_ahead(r);
     unsigned zeros = 0;
     while (zeros <= 40 && !(ahead >> zeros & 1)) ++zeros;
-    if (zeros > 40) fail_at_end(r);
-    pass_bits(r, zeros + 1);
+    pass_bits(r, zeros > 40 ? UINT32_MAX / 2 : zeros + 1);
     const unsigned width = zeros + order;
     const uint64_t low = bits_ahead(r) & ((UINT64_C(1) << width) - 1);
     pass_bits(r, width);
@@ -340,7 +314,7 @@ static int64_t get_difference(lyr_reader* r, unsigned order) {
 struct direction {
     double x, y, size, curvature;
 };
-static struct direction direction_of(const lyr_motion* m, double side) {
+static struct direction direction_of(const struct lyr_motion* m, double side) {
     const double x = (double)m->to_x - m->from_x, y = (double)m->to_y - m->from_y;
     const double s = (double)m->sagitta, square = x * x + y * y, rise = 4 * s * s;
     const double length = square_root(square), sum = square + rise;
@@ -350,7 +324,8 @@ static struct direction direction_of(const lyr_motion* m, double side) {
 }
 
 // The place and the sagitta to expect beside `old`.
-static void go_beside(const lyr_motion* old, const lyr_motion* next, double off, int64_t to[3]) {
+static void go_beside(const struct lyr_motion* old, const struct lyr_motion* next, double off,
+                      int64_t to[3]) {
     const bool joined = next->from_x == old->to_x && next->from_y == old->to_y;
     const struct direction e = direction_of(old, -1);
     struct direction n = joined ? direction_of(next, 1) : e;
@@ -366,7 +341,7 @@ static void go_beside(const lyr_motion* old, const lyr_motion* next, double off,
 }
 
 // The sagitta that goes on smoothly from the motion before, along the chord (x, y).
-static int64_t smooth_sagitta(const lyr_motion* m, double x, double y) {
+static int64_t smooth_sagitta(const struct lyr_motion* m, double x, double y) {
     const double x0 = (double)m->to_x - m->from_x, y0 = (double)m->to_y - m->from_y;
     const double c0 = square_root(x0 * x0 + y0 * y0), c = square_root(x * x + y * y);
     const double along = x0 * x + y0 * y, across = x0 * y - y0 * x;
@@ -377,8 +352,8 @@ static int64_t smooth_sagitta(const lyr_motion* m, double x, double y) {
 
 static bool take_packed(lyr_reader* r, lyr_operation* o) {
     struct lyr_decoder* d = &r->decoder;
-    const lyr_motion* last = &r->history[(d->motions - 1) % LYR_HISTORY];
-    const lyr_motion* old = &r->history[d->old++ % LYR_HISTORY];
+    const struct lyr_motion* last = &r->history[(d->motions - 1) % LYR_HISTORY];
+    const struct lyr_motion* old = &r->history[d->old++ % LYR_HISTORY];
     const lyr_point head = r->at.head;
     const int64_t x = get_difference(r, d->orders & 15), y = get_difference(r, d->orders & 15);
     const int64_t sagitta = get_difference(r, d->orders >> 4);
@@ -393,7 +368,7 @@ static bool take_packed(lyr_reader* r, lyr_operation* o) {
         to[1] += (int64_t)old->to_y - old->from_y;
         to[2] = old->sagitta;
     }
-    o->to = (lyr_point){coordinate(r, to[0] + x), coordinate(r, to[1] + y), head.z};
+    o->to = point(r, to[0] + x, to[1] + y, head.z);
     o->sagitta = to[2] + sagitta;
     return check(r, move(r, o, o->sagitta == 0 ? LYR_LINE : LYR_ARC));
 }
@@ -417,44 +392,40 @@ static bool begin_packed(lyr_reader* r) {
 
 // Hatches.
 
-static bool begin_hatch(lyr_reader* r) {
-    struct lyr_decoder* d = &r->decoder;
-    d->flags = get_byte(r);
-    d->row = within(r, get_signed(r), row_limit);
-    r->at.left = get_varint(r);
-    d->forward = !(d->flags & 2);
-    d->alike = 0;
-    d->last = 0;
-    check(r, r->at.left <= (uint64_t)row_limit);
-    return check(r, d->flags <= 3 && d->has_path && d->has_grid);
-}
-
 static bool take_end(lyr_reader* r, lyr_operation* o) {
     struct lyr_decoder* d = &r->decoder;
-    const int64_t a = r->grid[0], b = r->grid[1], pitch = r->grid[3];
+    const int64_t a = r->grid[0], b = r->grid[1], pitch = r->grid[3], half = unit / 2;
     // Doubles tell what would overflow.
     const double far = (double)d->row * (double)pitch, most = 3 * (double)offset_limit;
     const int64_t off = far > -most && far < most ? r->grid[2] + d->row * pitch : INT64_MAX;
-    const int64_t w = rounded(within(r, off, offset_limit), 24);
+    const int64_t w = (within(r, off, offset_limit) + (1 << 23)) >> 24;
     const bool few = d->ends <= 64, travels = d->end % 2 == 0 && !(d->end == 0 && d->linked);
     const uint64_t j = d->forward ? d->end : d->ends - 1 - d->end;
     int64_t* const before = d->before[few ? j : 0];  // in the last two rows
-    int64_t u = d->last;
-    if (few && d->alike > 0) u = d->alike == 1 ? before[0] : 2 * before[0] - before[1];
+    const int64_t went = d->alike == 1 ? before[0] : 2 * before[0] - before[1];
     if (!check(r, true)) return false;
-    u = d->last = within(r, u + get_signed(r), hatch_limit);
+    const int64_t u =
+        within(r, (few && d->alike > 0 ? went : d->last) + get_signed(r), hatch_limit);
     before[1] = before[0];
-    before[0] = u;
+    before[0] = d->last = u;
     o->hatch = true;
-    o->to.x = coordinate(r, rounded(u * a - w * b, 30));
-    o->to.y = coordinate(r, rounded(u * b + w * a, 30));
-    o->to.z = r->at.head.z;
+    o->to = point(r, (u * a - w * b + half) >> 30, (u * b + w * a + half) >> 30, r->at.head.z);
     return move(r, o, travels ? LYR_TRAVEL : LYR_LINE);
 }
 
 // Rows come in groups of as many intervals each, which have two values of a byte at least.
-static bool take_hatch(lyr_reader* r, lyr_operation* o) {
+static bool take_hatch(lyr_reader* r, lyr_operation* o, bool begins) {
     struct lyr_decoder* d = &r->decoder;
+    if (begins) {
+        d->flags = get_byte(r);
+        d->row = within(r, get_signed(r), row_limit);
+        r->at.left = get_varint(r);
+        d->forward = !(d->flags & 2);
+        d->alike = 0;
+        d->last = 0;
+        check(r, r->at.left <= (uint64_t)row_limit);
+        return check(r, d->flags <= 3 && d->has_path && d->has_grid);
+    }
     if (d->rows == 0) {
         const uint64_t code = get_varint(r), ends = code & ~UINT64_C(1);
         d->rows = get_varint(r);
@@ -478,18 +449,11 @@ static bool take_hatch(lyr_reader* r, lyr_operation* o) {
 
 // Operations.
 
-static bool set_grid(lyr_reader* r) {
-    int64_t* const g = r->grid;
-    for (int i = 0; i < 4; ++i) g[i] = within(r, get_signed(r), i < 2 ? unit : offset_limit);
-    within(r, g[0] * g[0] + g[1] * g[1] - unit * unit, 2 * unit);
-    r->decoder.has_grid = check(r, true);
-    return false;
-}
-
 static bool take_setting(lyr_reader* r, lyr_operation* o) {
     lyr_style* s = &r->style;
     uint32_t* const fields[] = {&s->width, &s->height, &s->flow, &s->speed, &s->acceleration};
     const uint8_t code = r->decoder.code;
+    const bool heats = code == LYR_TEMPERATURE, styles = code < LYR_TRAVEL_SPEED;
     if (code == LYR_PATH) {
         const uint8_t role = get_byte(r), stated = get_byte(r);
         s->role = role < 19 ? role : 0;
@@ -498,36 +462,36 @@ static bool take_setting(lyr_reader* r, lyr_operation* o) {
             if (stated >> i & 1) *fields[i] = get_setting(r);
         return r->decoder.has_path = check(r, true);
     }
-    if (!check(r, code > LYR_PATH && code <= LYR_OBJECT)) return false;
-    check(r, code >= LYR_TRAVEL_SPEED || r->decoder.has_path);
-    if (code == LYR_TEMPERATURE) o->heater = get_byte(r);
-    if (code == LYR_TEMPERATURE || code == LYR_FAN) o->number = get_setting(r);
+    if (!check(r, code <= LYR_OBJECT && (r->decoder.has_path || !styles))) return false;
+    if (heats) o->heater = get_byte(r);
+    if (heats || code == LYR_FAN) o->number = get_setting(r);
     o->value = code == LYR_PAUSE ? get_byte(r) == 1 : get_setting(r);
-    if (code == LYR_TEMPERATURE) o->wait = get_byte(r) != 0;
-    if (code < LYR_TRAVEL_SPEED) *fields[code == LYR_WIDTH ? 0 : code - LYR_SPEED + 3] = o->value;
+    if (heats) o->wait = get_byte(r) != 0;
+    if (styles) *fields[code == LYR_WIDTH ? 0 : code - LYR_SPEED + 3] = o->value;
     return check(r, o->heater <= 2 && (code != LYR_FAN || o->value <= 1000));
 }
 
 // A step of the operation at hand, or the beginning of the next one.
 static bool take_step(lyr_reader* r, lyr_operation* o) {
+    int64_t* const g = r->grid;
     const bool begins = r->at.left == 0;
     const uint8_t code = r->decoder.code = begins ? get_byte(r) : r->decoder.code;
     r->decoder.left -= begins;
     o->kind = (lyr_kind)code;
-    if (code == grid_code) return set_grid(r);
-    if (code == LYR_HATCH) return begins ? begin_hatch(r) : take_hatch(r, o);
-    if (code == LYR_WIPE && begins) return begin_wipe(r, o);
-    if (code > LYR_HATCH && code < LYR_WIPE) return begins ? begin_packed(r) : take_packed(r, o);
-    if (code >= skippable) {
-        const uint64_t bytes = get_varint(r);
-        if (bytes > left_of(r)) return fail_at_end(r);
-        r->at.cursor += bytes;
+    if (code == grid_code) {
+        for (int i = 0; i < 4; ++i) g[i] = within(r, get_signed(r), i < 2 ? unit : offset_limit);
+        within(r, g[0] * g[0] + g[1] * g[1] - unit * unit, 2 * unit);
+        r->decoder.has_grid = check(r, true);
         return false;
     }
-    if (code > LYR_WIPE) return take_setting(r, o);
+    if (code == LYR_HATCH) return take_hatch(r, o, begins);
+    if (code == LYR_WIPE && begins) return begin_wipe(r, o);
+    if (code > LYR_HATCH && code < LYR_WIPE) return begins ? begin_packed(r) : take_packed(r, o);
+    if (code >= skippable) return pass(r, get_varint(r)) && false;
+    if (code >= LYR_PATH) return take_setting(r, o);
     if (begins) r->at.left = code < LYR_TRAVEL ? (code & 15) + 1 : 1;
     if (begins) r->decoder.left -= r->at.left - 1;
-    return take_motion(r, o);
+    return check(r, code <= LYR_WIPE) && take_motion(r, o);
 }
 
 bool lyr_next(lyr_reader* r, lyr_operation* o) {
@@ -535,20 +499,20 @@ bool lyr_next(lyr_reader* r, lyr_operation* o) {
     while (fine(r)) {
         *o = (lyr_operation){.offset = begin};
         if (!r->in_chunk) {
-            if (read_head(r) && read_block(r, o)) return true;
+            if (take_block(r, o) && fine(r)) return true;
             begin = place(r);
         } else if (r->at.left > 0 || left_of(r) > 0) {
             if (take_step(r, o) && fine(r)) return true;
-        } else if (check(r, r->decoder.left == 0)) {
-            r->in_chunk = false;
-            if (r->decoder.chunks == r->layer.chunks) r->whole_layers = r->layers;
+        } else {
+            r->in_chunk = !check(r, r->decoder.left == 0);
         }
     }
     return false;
 }
 
 bool lyr_open(lyr_reader* r, const lyr_source* source, void* buffer, uint32_t size) {
-    *r = (lyr_reader){.source = *source, .buffer = buffer, .due = due_first};
+    *r = (lyr_reader){.source = *source, .buffer = buffer, .end = buffer, .at.cursor = buffer};
+    r->due = 1 << metadata_block;
     r->crc = r->offsets_crc = UINT32_MAX;
     r->capacity = size < longest_payload ? size : longest_payload;
     for (uint32_t i = 0; i < 256; ++i) {
@@ -557,43 +521,27 @@ bool lyr_open(lyr_reader* r, const lyr_source* source, void* buffer, uint32_t si
             r->crc_table[i] = r->crc_table[i] >> 1 ^ (r->crc_table[i] & 1) * UINT32_C(0x82f63b78);
     }
     if (size < LYR_LEAST_BUFFER) return fail(r, LYR_TOO_LONG);
-    for (int i = 0; i < 4; ++i)
-        if (read_bytes(r, r->buffer + i, 1) && r->buffer[i] != "LYR\x1a"[i]) fail(r, LYR_NO_LYR);
-    if (!read_bytes(r, r->buffer + 4, 12) || r->crc != right_crc) return fail(r, LYR_DAMAGED);
+    for (int i = 0; i < 16; ++i)
+        if (read_bytes(r, r->buffer + i, 1) && i < 4 && r->buffer[i] != "LYR\x1a"[i])
+            fail(r, LYR_NO_LYR);
+    if (r->crc != right_crc) return fail(r, LYR_DAMAGED);
     r->major = (uint32_t)get_fixed(r->buffer + 4, 2);
     r->minor = (uint32_t)get_fixed(r->buffer + 6, 2);
     r->quantum_nm = (uint32_t)get_fixed(r->buffer + 8, 4);
     r->offset = r->major == 1 ? 8 : 4;
     if (r->major != 1) return fail(r, LYR_UNSUPPORTED);
-    check(r, r->quantum_nm - 1 <= 999999);
-    if (!read_head(r) || !check(r, r->type == metadata_block) || !read_payload(r, true))
-        return false;
-    while (read_head(r) && r->type != layer_block && r->type != index_block) read_block(r, NULL);
-    return fine(r);
+    if (!check(r, r->quantum_nm - 1 <= 999999) || !read_block(r)) return false;
+    r->due = due_first;
+    return true;
 }
 
-static bool seek_to(lyr_reader* r, uint64_t offset) {
-    r->behind = offset;
-    r->has_head = false;
-    return (r->source.seek && r->source.seek(r->source.user, offset)) || fail(r, LYR_UNREADABLE);
-}
-
-bool lyr_seek_layer(lyr_reader* r, uint32_t index) {
-    const uint64_t size = r->source.size, last = head_bytes + end_bytes + 4;
+bool lyr_seek_layer(lyr_reader* r, uint32_t index, uint64_t offset) {
     r->status = LYR_OK;
     r->sought = true;
     r->too_large = r->in_chunk = false;
-    r->due = due_first;
+    r->due = 1 << layer_block;
     r->whole_layers = 0;
     r->layers = index;
-    if (!seek_to(r, size < last ? 0 : size - last) || !read_head(r)) return false;
-    if (r->type != end_block || r->length != end_bytes) return fail(r, LYR_CUT_SHORT);
-    if (!read_payload(r, true)) return false;
-    const uint64_t layers = get_fixed(r->buffer, 4);
-    if (!seek_to(r, get_fixed(r->buffer + 28, 8)) || !read_head(r)) return false;
-    check(r, r->type == index_block && r->length == 8 * layers);
-    if (!fine(r) || !read_payload(r, false)) return false;
-    if (index >= layers) return fail(r, LYR_NO_SUCH_LAYER);
-    return seek_to(r, r->offset + head_bytes + 8ull * index) && read_bytes(r, r->buffer, 8) &&
-           seek_to(r, get_fixed(r->buffer, 8)) && read_head(r) && check(r, r->type == layer_block);
+    r->behind = offset;
+    return (r->source.seek && r->source.seek(r->source.user, offset)) || fail(r, LYR_UNREADABLE);
 }

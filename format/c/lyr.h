@@ -1,17 +1,15 @@
-// Reads a .lyr file in C99 with nothing but a compiler: no library, no heap. For microcontrollers;
-// docs/lyr-format.md gives the format, docs/c-reader.md an example. Packed runs need IEEE doubles,
+// Reads a .lyr file in C99 with nothing but a compiler: no library, no heap. For microcontrollers. docs/lyr-format.md
+// gives the format and the units of what is not in quanta, docs/c-reader.md an example. Packed runs need IEEE doubles,
 // rounded by each operation: build with -ffp-contract=off where the processor fuses them.
 //
 // Contract
-//  1. No operation is given out before the CRC of its chunk was found right, nor a layer's state
-//     before that of its block. After an error the reader stays at it until lyr_seek_layer().
+//  1. No operation is given out before the CRC of its chunk was found right, nor a layer's state before that of its
+//     block. After an error the reader stays at it until lyr_seek_layer().
 //  2. LYR_END comes only after the end block was found right: counts, index, and nothing behind it.
-//  3. It accepts and refuses what format/reader.h does, at the same byte, but for the text of the
-//     metadata, which it hands on; with a buffer of 65528 bytes. A smaller one (at least
-//     LYR_LEAST_BUFFER) does for files whose blocks have no longer payload (else LYR_TOO_LONG).
+//  3. It accepts and refuses what format/reader.h does, at the same byte, but for the metadata's text and thumbnails.
+//     65528 bytes of buffer do for every file, fewer (at least LYR_LEAST_BUFFER) for one of shorter blocks.
 //  4. No input makes it read or write out of bounds, loop, or leave the ranges of its numbers.
-//  5. Coordinates are in quanta, each within +-(2^31 - 1); other numbers are in the file's units.
-//  6. Motions of no length are passed over, and what a later minor version added.
+//  5. Coordinates are within +-(2^31 - 1). Motions of no length, and what a later version added, are passed over.
 #pragma once
 
 #include <stdbool.h>
@@ -26,26 +24,20 @@ enum { LYR_LEAST_BUFFER = 36, LYR_HISTORY = 1024 };
 
 typedef enum lyr_status {
     LYR_OK,
-    LYR_END,            // the print is complete
-    LYR_UNREADABLE,     // the source failed to read or seek
-    LYR_CUT_SHORT,      // the file ends too early
-    LYR_NO_LYR,         // not a .lyr file at all
-    LYR_DAMAGED,        // a CRC is wrong
-    LYR_UNSUPPORTED,    // needs a newer reader
-    LYR_TOO_LONG,       // a block does not fit the buffer, or the format
-    LYR_NONSENSE,       // right CRC, but against the specification
-    LYR_NO_SUCH_LAYER,  // lyr_seek_layer() behind the last one
+    LYR_END,          // the print is complete
+    LYR_UNREADABLE,   // the source failed to read or seek
+    LYR_CUT_SHORT,    // the file ends too early
+    LYR_NO_LYR,       // not a .lyr file at all
+    LYR_DAMAGED,      // a CRC is wrong
+    LYR_UNSUPPORTED,  // needs a newer reader
+    LYR_TOO_LONG,     // a block does not fit the buffer, or the format
+    LYR_NONSENSE,     // right CRC, but against the specification
 } lyr_status;
 
 typedef struct lyr_source {
     // Up to `count` (at least 1) bytes; how many, 0 at the file's end; negative: cannot read.
     int32_t (*read)(void* user, uint8_t* bytes, uint32_t count);
-    // To a byte of the file, whose size must be stated; both for lyr_seek_layer() only.
-    bool (*seek)(void* user, uint64_t offset);
-    uint64_t size;
-    // If not null: a piece of the metadata (type 1), a thumbnail or the like (0x80 and above), and
-    // how much is left of it. Not to be trusted before the call that reads it came back all right.
-    void (*extra)(void* user, uint8_t type, const uint8_t* bytes, uint32_t count, uint32_t left);
+    bool (*seek)(void* user, uint64_t offset);  // to a byte of the file, for lyr_seek_layer() only
     void* user;
 } lyr_source;
 
@@ -110,11 +102,6 @@ typedef struct lyr_operation {
     uint64_t offset;  // byte of the file where it begins
 } lyr_operation;
 
-typedef struct lyr_motion {
-    int32_t from_x, from_y, to_x, to_y;
-    int64_t sagitta;
-} lyr_motion;
-
 // What stands behind `source` is the reader's own affair.
 typedef struct lyr_reader {
     lyr_status status;
@@ -126,8 +113,8 @@ typedef struct lyr_reader {
     int64_t grid[4];  // of hatches: a, b, offset, pitch in 2^-30, 2^-30, 2^-24 and 2^-24 quanta
     lyr_source source;
     uint8_t *buffer, due, type;
-    bool has_head, in_chunk, too_large, sought;
-    uint32_t capacity, length, crc, index_crc, offsets_crc, layers, depth;
+    bool in_chunk, too_large, sought;
+    uint32_t capacity, length, crc, index_crc, offsets_crc, layers, depth, crc_table[256];
     uint64_t behind, index_offset, chunks, operations;
     double way;
     const uint8_t* end;
@@ -142,17 +129,20 @@ typedef struct lyr_reader {
         uint64_t chunks, operations, left, motions, old, rows, alike, ends, end;
         int64_t back, distance, row, last, before[64][2];
     } decoder;
-    uint32_t crc_table[256];
-    lyr_motion history[LYR_HISTORY];
+    struct lyr_motion {
+        int32_t from_x, from_y, to_x, to_y;
+        int64_t sagitta;
+    } history[LYR_HISTORY];
 } lyr_reader;
 
-// Reads up to the first layer. The source is copied; the buffer is in use until the last call.
+// Reads the metadata, whose text then is the first `length` bytes of the buffer. That is in use
+// until the last call; the source is copied.
 bool lyr_open(lyr_reader* reader, const lyr_source* source, void* buffer, uint32_t size);
 // The next operation. False: the end (LYR_END) or an error.
 bool lyr_next(lyr_reader* reader, lyr_operation* operation);
-// Goes by the index: the next operation will be LYR_LAYER of this layer (from 0). The end is then
-// checked without counts and index. Only for a reader that was opened.
-bool lyr_seek_layer(lyr_reader* reader, uint32_t index);
+// Goes to the layer of this number whose LYR_LAYER was, or is according to the index, at `offset`. The end is
+// then checked without counts and index. Only for a reader that was opened.
+bool lyr_seek_layer(lyr_reader* reader, uint32_t index, uint64_t offset);
 
 #ifdef __cplusplus
 }

@@ -4,22 +4,44 @@
 
 #include "base/replace_file.h"
 #include "base/text.h"
+#include "format/check/scan.h"
+#include "format/layer_record.h"
 #include "format/metadata_text.h"
 
 namespace lyr::format {
 namespace {
 
-EncodedLayer encoded(std::span<const std::byte> file, const CheckedLayer& layer, Quantum quantum) {
+bool is(const Piece& piece, BlockType type) {
+    return piece.right && piece.type == static_cast<std::uint8_t>(type);
+}
+
+void take_state(EncodedLayer& out, std::span<const std::byte> payload) {
+    const char* why = nullptr;
+    const auto record = decode_layer(payload, out.quantum, why);
+    if (!record) return;
+    out.state = record->layer.state;
+    out.totals = record->layer.totals;
+}
+
+void take_chunk(EncodedLayer& out, std::span<const std::byte> payload) {
+    Cursor cursor(payload);
+    cursor.varint();  // the layer's number
+    cursor.varint();  // its own
+    const std::uint64_t operations = cursor.varint();
+    const auto bytes = payload.subspan(cursor.offset());
+    const std::size_t begin = out.bytes.size();
+    out.bytes.insert(out.bytes.end(), bytes.begin(), bytes.end());
+    out.chunks.push_back({begin, out.bytes.size(), operations});
+}
+
+// Blocks between its chunks, right or damaged, are no part of a layer.
+EncodedLayer encoded(FileView& file, const CheckedLayer& layer, Quantum quantum) {
     EncodedLayer out;
-    out.state = layer.record.layer.state;
-    out.totals = layer.record.layer.totals;
     out.quantum = quantum;
-    for (const CheckedChunk& chunk : layer.chunks) {
-        const auto bytes = file.subspan(static_cast<std::size_t>(chunk.begin),
-                                        static_cast<std::size_t>(chunk.end - chunk.begin));
-        const std::size_t begin = out.bytes.size();
-        out.bytes.insert(out.bytes.end(), bytes.begin(), bytes.end());
-        out.chunks.push_back({begin, out.bytes.size(), chunk.operations});
+    Scanner scanner(file, layer.begin);
+    for (auto piece = scanner.next(); piece && piece->begin < layer.end; piece = scanner.next()) {
+        if (is(*piece, BlockType::layer)) take_state(out, piece->payload(file));
+        if (is(*piece, BlockType::chunk)) take_chunk(out, piece->payload(file));
     }
     return out;
 }
@@ -57,11 +79,13 @@ std::string kept_layers(const Verification& verification) {
 }
 
 // Of a whole file.
-Result<Repaired> copied(std::span<const std::byte> file, const Verification& verification,
+Result<Repaired> copied(FileView& file, const Verification& verification,
                         const std::string& output) {
     auto copy = ReplaceFile::open(output);
     if (!copy) return copy.error();
-    copy->write(file);
+    for (std::uint64_t at = 0; at < file.size(); at += FileView::window_bytes)
+        copy->write(file.at(at, FileView::window_bytes));
+    if (file.error()) return *file.error();
     if (const Status committed = copy->commit(); !committed) return committed.error();
     Repaired out;
     out.totals = {static_cast<std::uint32_t>(verification.layers.size()), verification.chunks,
@@ -71,8 +95,8 @@ Result<Repaired> copied(std::span<const std::byte> file, const Verification& ver
 
 }  // namespace
 
-Result<Repaired> repair(std::span<const std::byte> file, const Verification& verification,
-                        const std::string& name, const std::string& output) {
+Result<Repaired> repair(FileView& file, const Verification& verification, const std::string& name,
+                        const std::string& output) {
     const auto refuse = [&](const std::string& why) {
         return Diagnostic{Severity::error, ExitStatus::input, why, {.file = name}};
     };
@@ -95,6 +119,7 @@ Result<Repaired> repair(std::span<const std::byte> file, const Verification& ver
                 writer->append(encoded(file, verification.layers[i], *verification.quantum));
             !appended)
             return appended.error();
+    if (file.error()) return *file.error();
     const auto totals = writer->finish();
     if (!totals) return totals.error();
     out.totals = *totals;

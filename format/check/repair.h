@@ -10,7 +10,6 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -24,8 +23,9 @@ struct Repaired {
     std::vector<std::string> notes;
 };
 
-// `file` is what was verified. Errors: nothing can be kept (status input), not writable (output).
-Result<Repaired> repair(std::span<const std::byte> file, const Verification& verification,
-                        const std::string& name, const std::string& output);
+// `file` is what was verified. Errors: nothing can be kept, or the file cannot be read (status input), not
+// writable (output).
+Result<Repaired> repair(FileView& file, const Verification& verification, const std::string& name,
+                        const std::string& output);
 
 }  // namespace lyr::format

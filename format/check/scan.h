@@ -10,8 +10,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
-#include <vector>
+
+#include "format/check/file_view.h"
+#include "format/layout.h"
 
 namespace lyr::format {
 
@@ -20,9 +23,26 @@ struct Piece {
     std::uint8_t type = 0;             // as its first byte says
     bool right = false;                // its CRC
 
-    std::span<const std::byte> payload(std::span<const std::byte> file) const;
+    // Of a right one, valid as long as what FileView gives.
+    std::span<const std::byte> payload(FileView& file) const;
 };
 
-std::vector<Piece> scan(std::span<const std::byte> file);
+class Scanner {
+public:
+    // The file outlives it. It begins with the block at `begin`.
+    explicit Scanner(FileView& file, std::uint64_t begin = prologue_bytes);
+
+    // None: the file's end.
+    std::optional<Piece> next();
+
+private:
+    std::uint64_t end_of(std::uint64_t at);
+    bool is_right(std::uint64_t at, std::uint64_t end);
+    bool is_likely(std::uint64_t at, std::uint64_t length);
+    std::uint64_t next_right(std::uint64_t at);
+
+    FileView& file_;
+    std::uint64_t at_, budget_;
+};
 
 }  // namespace lyr::format

@@ -13,6 +13,7 @@
 #include "format/check/scan.h"
 #include "format/chunk_decoder.h"
 #include "format/crc32c.h"
+#include "format/layer_record.h"
 #include "format/layout.h"
 #include "format/metadata_text.h"
 
@@ -57,23 +58,24 @@ std::string kind_of(std::uint8_t type) {
 // The layer at hand; `sound` while nothing of it was wrong.
 struct OpenLayer {
     CheckedLayer layer;
-    std::uint64_t operations = 0;
+    LayerTotals totals;
+    std::uint64_t chunks = 0, operations = 0;
     bool sound = false;
 };
 
 class Verifier {
 public:
-    explicit Verifier(Bytes file) : file_(file) { out_.bytes = file.size(); }
+    explicit Verifier(FileView& file) : file_(file) { out_.bytes = file.size(); }
 
     Verification run() {
         if (!read_prologue()) return std::move(out_);
-        const std::vector<Piece> pieces = scan(file_);
-        find_stated_layers(pieces);
-        for (const Piece& piece : pieces) {
-            if (piece.right)
-                take(piece);
+        find_stated_layers();
+        Scanner scanner(file_);
+        while (const std::optional<Piece> piece = scanner.next()) {
+            if (piece->right)
+                take(*piece);
             else
-                bad_.push_back(piece);
+                bad_.push_back(*piece);
         }
         finish();
         std::stable_sort(out_.findings.begin(), out_.findings.end(),
@@ -88,12 +90,13 @@ private:
     }
 
     bool read_prologue() {
-        const Bytes head = file_.first(std::min(file_.size(), prologue_bytes));
+        const bool known = is_print(file_.at(0, print_head_bytes));
+        const Bytes head = file_.at(0, prologue_bytes);
         const std::size_t compared = std::min(head.size(), magic.size());
         const bool named = std::memcmp(head.data(), magic.data(), compared) == 0;
         const auto stop = [&](const char* what) { return find(0, head.size(), what), false; };
         if (head.empty()) return stop("the file is empty");
-        if (!is_print(file_)) return stop(no_print);
+        if (!known) return stop(no_print);
         out_.cut_short = head.size() < prologue_bytes;
         if (out_.cut_short) return stop("the file is cut short within its prologue");
         if (!named || crc32c(head.first(12)) != get_u32(head.data() + 12)) {
@@ -115,12 +118,12 @@ private:
         return true;
     }
 
-    void find_stated_layers(const std::vector<Piece>& pieces) {
-        if (pieces.empty()) return;
-        const Piece& last = pieces.back();
-        if (!last.right || !is(last, BlockType::end)) return;
-        const Bytes payload = last.payload(file_);
-        if (payload.size() == end_payload_bytes) state_layers(get_u32(payload.data()));
+    void find_stated_layers() {
+        constexpr std::size_t end_bytes = block_frame_bytes + end_payload_bytes;
+        if (file_.size() < prologue_bytes + end_bytes) return;
+        const std::optional<Piece> last = Scanner(file_, file_.size() - end_bytes).next();
+        if (last->right && last->end == file_.size() && is(*last, BlockType::end))
+            state_layers(get_u32(last->payload(file_).data()));
     }
 
     void state_layers(std::uint32_t layers) {
@@ -248,7 +251,8 @@ private:
         offsets_.push_back(piece.begin);
         expect_behind(place, record->layer.totals.chunks);
         open_.emplace();
-        open_->layer = {*record, piece.begin, piece.end, {}};
+        open_->layer = {record->layer.index, piece.begin, piece.end};
+        open_->totals = record->layer.totals;
         decoder_.begin_layer(record->start, out_.quantum.value_or(Quantum{}));
         open_->sound = true;
     }
@@ -256,15 +260,14 @@ private:
     void close_layer(std::uint64_t at) {
         if (!open_) return;
         const CheckedLayer& layer = open_->layer;
-        const bool all_chunks = layer.chunks.size() == layer.record.layer.totals.chunks;
-        if (open_->sound && all_chunks &&
-            open_->operations != layer.record.layer.totals.operations) {
+        const bool all_chunks = open_->chunks == open_->totals.chunks;
+        if (open_->sound && all_chunks && open_->operations != open_->totals.operations) {
             find(at, at,
-                 "layer " + std::to_string(std::uint64_t{layer.record.layer.index} + 1) +
+                 "layer " + std::to_string(std::uint64_t{layer.index} + 1) +
                      " has another number of operations than it says");
         } else if (open_->sound && all_chunks) {
-            if (layer.record.layer.index == out_.whole_from_start) ++out_.whole_from_start;
-            out_.layers.push_back(std::move(open_->layer));
+            if (layer.index == out_.whole_from_start) ++out_.whole_from_start;
+            out_.layers.push_back(layer);
         }
         open_.reset();
     }
@@ -283,17 +286,17 @@ private:
         const bool in_order = arrive(piece, place);
         ++out_.chunks;
         out_.operations += operations;
-        const bool of_open = open_ && open_->layer.record.layer.index == layer;
+        const bool of_open = open_ && open_->layer.index == layer;
         if (open_ && !of_open) close_layer(piece.begin);
         if (of_open && !due) open_->sound = false;
         if (!in_order) return;
-        expect_behind(place, of_open ? open_->layer.record.layer.totals.chunks : unknown_chunks);
+        expect_behind(place, of_open ? open_->totals.chunks : unknown_chunks);
         if (!of_open || !open_->sound) return;
         const std::uint64_t begin = piece.begin + block_head_bytes + cursor.offset();
         decoder_.begin_chunk(payload.subspan(cursor.offset()), operations);
         decode(piece, place, begin);
-        open_->layer.chunks.push_back({begin, piece.end - block_crc_bytes, operations});
         open_->layer.end = piece.end;
+        ++open_->chunks;
         open_->operations += operations;
     }
 
@@ -367,10 +370,10 @@ private:
     }
 
     // It was written whole: it has the end block's length, or one that leads to the file's end.
-    bool is_framed(const Piece& bad) const {
+    bool is_framed(const Piece& bad) {
         const std::uint64_t size = bad.end - bad.begin;
         if (size < block_frame_bytes) return false;
-        const std::uint32_t head = get_u32(file_.data() + bad.begin);
+        const std::uint32_t head = file_.u32_at(bad.begin);
         return size == block_frame_bytes + (head >> 8) ||
                (due_ == end_place && size == block_frame_bytes + end_payload_bytes);
     }
@@ -383,7 +386,7 @@ private:
         return place;
     }
 
-    Bytes file_;
+    FileView& file_;
     Verification out_;
     std::vector<Piece> bad_;  // since the last right one
     PrintPlace due_ = metadata_place;
@@ -405,12 +408,18 @@ bool is_print(std::span<const std::byte> head) {
     if (std::memcmp(head.data(), magic.data(), std::min(head.size(), magic.size())) == 0)
         return true;
     if (head.size() <= prologue_bytes) return false;
-    const Piece first = scan(head).front();
-    return first.right && is(first, BlockType::metadata);
+    FileView view(head);
+    const std::optional<Piece> first = Scanner(view).next();
+    return first->right && is(*first, BlockType::metadata);
+}
+
+Verification verify(FileView& file) {
+    return Verifier(file).run();
 }
 
 Verification verify(std::span<const std::byte> file) {
-    return Verifier(file).run();
+    FileView view(file);
+    return verify(view);
 }
 
 }  // namespace lyr::format

@@ -17,21 +17,15 @@
 #include <vector>
 
 #include "base/diagnostic.h"
-#include "format/layer_record.h"
+#include "format/check/file_view.h"
 #include "format/metadata.h"
+#include "format/operation.h"
 
 namespace lyr::format {
 
-// Of a right chunk: where its operations are in the file.
-struct CheckedChunk {
-    std::uint64_t begin = 0, end = 0;
-    std::uint64_t operations = 0;
-};
-
 struct CheckedLayer {
-    LayerRecord record;
-    std::uint64_t begin = 0, end = 0;
-    std::vector<CheckedChunk> chunks;
+    std::uint32_t index = 0;
+    std::uint64_t begin = 0, end = 0;  // from its own block to its last chunk, in the file
 };
 
 struct Finding {
@@ -54,6 +48,9 @@ struct Verification {
     std::vector<Finding> findings;
 };
 
+// Takes 24 bytes for each layer, and a few 100 KB besides, however large the file is. What FileView cannot read has
+// findings, too; its error() tells.
+Verification verify(FileView& file);
 Verification verify(std::span<const std::byte> file);
 
 // Is this a .lyr file, maybe a damaged one? Its first bytes tell, of which no more than these are looked at.

@@ -13,9 +13,7 @@ std::string ranges_of(const std::vector<CheckedLayer>& layers) {
     std::string text;
     for (std::size_t i = 0; i < layers.size();) {
         std::size_t last = i;
-        const auto number = [&](std::size_t at) {
-            return std::uint64_t{layers[at].record.layer.index} + 1;
-        };
+        const auto number = [&](std::size_t at) { return std::uint64_t{layers[at].index} + 1; };
         while (last + 1 < layers.size() && number(last + 1) == number(last) + 1) ++last;
         text += (text.empty() ? "" : ", ") + std::to_string(number(i));
         if (last > i) text += " to " + std::to_string(number(last));

@@ -60,6 +60,20 @@ TEST_CASE("lyrview --verify: a whole print, a damaged one, one that is cut, and 
     check_failure(folder.run("lyrview --verify missing.lyr"), 3, "missing.lyr");
 }
 
+#ifndef __SANITIZE_ADDRESS__  // which needs the address space that is bounded here
+TEST_CASE("lyrview --verify, --repair: a file larger than memory is read piece by piece") {
+    const Folder folder = with_prints("lyrview-verify-large");
+    const std::string grow = "cp a.lyr large.lyr; truncate -s 60M large.lyr; ulimit -v 40000; ";
+    const Ended verified = folder.run(grow + "lyrview --verify large.lyr");
+    CHECK(verified.status == 3);
+    CHECK(
+        verified.out.find("something follows the end of the print\nwhole: layers 1 to 3 of 3\n") !=
+        std::string::npos);
+    CHECK(folder.run(grow + "lyrview --repair large.lyr -o whole.lyr").status == 0);
+    CHECK(text_of(folder / "whole.lyr") == text_of(folder / "a.lyr"));
+}
+#endif
+
 TEST_CASE("lyrview --repair: the layers in front of the damage, said and whole") {
     const Folder folder = with_prints("lyrview-repair");
     const std::string before = text_of(folder / "b.lyr");

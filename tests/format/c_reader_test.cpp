@@ -187,10 +187,13 @@ TEST_CASE("C reader: it starts at any layer, and goes back") {
     test::Memory memory{file};
     test::CReader c(memory);
     REQUIRE(c.open());
-    std::vector<std::uint64_t> operations(3);
-    while (lyr_next(&c.reader, &c.operation)) ++operations[c.reader.layer.index];
+    std::vector<std::uint64_t> operations(3), offsets(3);
+    while (lyr_next(&c.reader, &c.operation)) {
+        if (c.operation.kind == LYR_LAYER) offsets[c.operation.number] = c.operation.offset;
+        ++operations[c.reader.layer.index];
+    }
     for (const std::uint32_t layer : {2u, 0u, 1u}) {
-        REQUIRE(lyr_seek_layer(&c.reader, layer));
+        REQUIRE(lyr_seek_layer(&c.reader, layer, offsets[layer]));
         CHECK(lyr_next(&c.reader, &c.operation));
         CHECK(c.operation.kind == LYR_LAYER);
         CHECK(c.operation.number == layer);
@@ -200,13 +203,19 @@ TEST_CASE("C reader: it starts at any layer, and goes back") {
         CHECK(left ==
               std::accumulate(operations.begin() + layer, operations.end(), std::uint64_t{0}));
     }
-    CHECK_FALSE(lyr_seek_layer(&c.reader, 3));
-    CHECK(c.reader.status == LYR_NO_SUCH_LAYER);
-    CHECK(lyr_seek_layer(&c.reader, 0));
-    memory.bytes = memory.bytes.first(file.size() - 1);
-    c.reader.source.size = file.size() - 1;
-    CHECK_FALSE(lyr_seek_layer(&c.reader, 0));
-    CHECK(c.reader.status == LYR_CUT_SHORT);
+    // Another layer, no layer, and behind the end.
+    const std::pair<std::uint64_t, lyr_status> wrong[] = {
+        {offsets[1], LYR_NONSENSE}, {offsets[0] - 1, LYR_DAMAGED}, {file.size(), LYR_CUT_SHORT}};
+    for (const auto& [offset, status] : wrong) {
+        REQUIRE(lyr_seek_layer(&c.reader, 0, offset));
+        CHECK_FALSE(lyr_next(&c.reader, &c.operation));
+        CHECK(c.reader.status == status);
+    }
+    REQUIRE(lyr_seek_layer(&c.reader, 0, offsets[0]));
+    CHECK(lyr_next(&c.reader, &c.operation));
+    c.reader.source.seek = nullptr;
+    CHECK_FALSE(lyr_seek_layer(&c.reader, 0, offsets[0]));
+    CHECK(c.reader.status == LYR_UNREADABLE);
 }
 
 TEST_CASE("C reader: each piece of a wipe tells the way of all") {
@@ -238,36 +247,15 @@ TEST_CASE("C reader: each piece of a wipe tells the way of all") {
     CHECK(arcs > 50);
 }
 
-TEST_CASE("C reader: metadata, configuration and thumbnails are handed on") {
-    struct Kept {
-        test::Memory memory;
-        std::vector<std::pair<int, std::string>> extras;
-        bool open = false;
-    };
+TEST_CASE("C reader: once it is open, the buffer holds the metadata's text") {
     const FileBytes file = test::small_file();
-    Kept kept{{file}, {}};
-    lyr_source source = kept.memory.source();
-    source.user = &kept;
-    source.read = [](void* user, std::uint8_t* out, std::uint32_t count) {
-        return test::Memory::read(&static_cast<Kept*>(user)->memory, out, std::min(count, 50u));
-    };
-    source.extra = [](void* user, std::uint8_t type, const std::uint8_t* bytes, std::uint32_t count,
-                      std::uint32_t left) {
-        auto& out = *static_cast<Kept*>(user);
-        if (!out.open) out.extras.push_back({type, ""});
-        out.extras.back().second.append(reinterpret_cast<const char*>(bytes), count);
-        out.open = left > 0;
-    };
-    std::vector<std::byte> buffer(400);
-    lyr_reader reader;
-    REQUIRE(lyr_open(&reader, &source, buffer.data(), 400));
-    REQUIRE(kept.extras.size() == 3);
-    CHECK(kept.extras[0].first == 1);
-    CHECK(kept.extras[0].second.starts_with("source=part.step\n"));
-    CHECK(kept.extras[0].second.find("layers=3\n") != std::string::npos);
-    CHECK(kept.extras[1] == std::pair<int, std::string>(0x82, "layer.height = 0.2\n"));
-    CHECK(kept.extras[2].first == 0x81);
-    CHECK(kept.extras[2].second.size() == 11);
+    test::Memory memory{file, 0, 50};
+    test::CReader c(memory);
+    REQUIRE(c.open());
+    const std::string text(reinterpret_cast<const char*>(c.buffer.data()), c.reader.length);
+    CHECK(text.starts_with("source=part.step\n"));
+    CHECK(text.find("layers=3\n") != std::string::npos);
+    CHECK(text.ends_with("\n"));
 }
 
 TEST_CASE("C reader: its square root is rounded as IEEE 754 says") {

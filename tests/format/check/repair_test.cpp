@@ -16,7 +16,8 @@ namespace {
 const std::string output = scratch("repaired");
 
 Result<Repaired> repaired(const FileBytes& file) {
-    return repair(file, verify(file), "broken.lyr", output);
+    FileView view(file);
+    return repair(view, verify(file), "broken.lyr", output);
 }
 
 // The operations of the layers in front of one (from 0).

@@ -14,6 +14,14 @@ using namespace lyr::format::test;
 
 namespace {
 
+std::vector<Piece> scan(const FileBytes& file) {
+    FileView view(file);
+    Scanner scanner(view);
+    std::vector<Piece> pieces;
+    while (const auto piece = scanner.next()) pieces.push_back(*piece);
+    return pieces;
+}
+
 // Contract 1; how many are right.
 std::size_t right_pieces(const FileBytes& file) {
     const std::vector<Piece> pieces = scan(file);

@@ -25,7 +25,7 @@ std::string difference(const FileBytes& file) {
 
 std::vector<std::uint32_t> whole_layers(const Verification& v) {
     std::vector<std::uint32_t> numbers;
-    for (const CheckedLayer& layer : v.layers) numbers.push_back(layer.record.layer.index + 1);
+    for (const CheckedLayer& layer : v.layers) numbers.push_back(layer.index + 1);
     return numbers;
 }
 
@@ -213,4 +213,31 @@ TEST_CASE("verify: random bytes behind the prologue neither crash nor hang, nor 
         CHECK(!v.findings.empty());
         CHECK(v.layers.empty());
     }
+}
+
+TEST_CASE(
+    "verify: a file on disk is found to be what its bytes in memory are, and what is gone is "
+    "said") {
+    const FileBytes file = small_file();
+    const std::string path = scratch("viewed");
+    std::mt19937 random(8);
+    for (int turn = 0; turn < 40; ++turn) {
+        FileBytes damaged = file;
+        // Bytes that nobody knows, so that the file is larger than the window.
+        if (turn % 2) damaged.insert(damaged.end() - 44, 2 * FileView::window_bytes, std::byte{0});
+        damaged[random() % damaged.size()] ^= std::byte{4};
+        save(damaged, path);
+        auto view = FileView::open(path);
+        REQUIRE(view.ok());
+        CHECK(to_text(verify(*view), "") == to_text(verify(damaged), ""));
+        CHECK_FALSE(view->error());
+    }
+    auto view = FileView::open(path);
+    REQUIRE(view.ok());
+    std::filesystem::resize_file(path, 100);
+    CHECK_FALSE(verify(*view).findings.empty());
+    REQUIRE(view->error());
+    CHECK(view->error()->message.find("shorter") != std::string::npos);
+    CHECK_FALSE(FileView::open(path + ".missing").ok());
+    CHECK_FALSE(FileView::open(LYR_BUILD).ok());
 }
