@@ -217,7 +217,9 @@ Status work(const CLI::App& app, const Arguments& arguments) {
         if (!draws && app.count("--output") == 0 && arguments.to.empty())
             return usage(
                 "say what of it to show: --info, --layer N, or a file to write, as -o part.html");
-        const auto otherwise = draws ? std::optional(ExportFormat::svg) : std::nullopt;
+        // A name that says png or pdf is not given a picture of another kind.
+        const bool says_none = std::filesystem::path(arguments.output_path).extension().empty();
+        const auto otherwise = draws && says_none ? std::optional(ExportFormat::svg) : std::nullopt;
         const auto found = export_format(arguments.output_path, arguments.to, otherwise);
         if (!found) return found.error();
         format = *found;

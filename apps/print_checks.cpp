@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <span>
 
+#include "apps/export_format.h"
 #include "apps/files.h"
 #include "apps/signal_watch.h"
 #include "base/file_place.h"
@@ -131,6 +132,10 @@ Status check_print(const CLI::App& app, const Program& program, const CheckReque
     const bool may_write = request.repair || request.thumbnail;
     if (writes && !may_write)
         return usage("-o goes with --repair or --thumbnail, not with --verify or --diff");
+    const auto named = export_format(output_path, "", std::nullopt);
+    if (request.repair && named && *named != ExportFormat::lyr)
+        return usage("--repair writes a print: say -o FILE.lyr");
+    if (request.thumbnail && named) return usage("--thumbnail writes a picture: say -o FILE.png");
     const char* what = request.thumbnail ? "the picture" : "the repaired print";
     if (const Status apart =
             check_apart({{"the print", lyr_path}}, {{what, may_write ? output_path : ""}});

@@ -108,13 +108,14 @@ typedef struct lyr_reader {
     uint64_t offset;                    // of an error: byte of the file
     uint32_t whole_layers;              // number of the last whole layer; 0: none is
     uint32_t major, minor, quantum_nm;  // after lyr_open()
+    uint32_t length;                    // of the block read last: after lyr_open() the metadata's
     lyr_layer layer;                    // of the last LYR_LAYER
     lyr_style style;                    // as of the operation given out last
     int64_t grid[4];  // of hatches: a, b, offset, pitch in 2^-30, 2^-30, 2^-24 and 2^-24 quanta
     lyr_source source;
     uint8_t *buffer, due, type;
     bool in_chunk, too_large, sought;
-    uint32_t capacity, length, crc, index_crc, offsets_crc, layers, depth, crc_table[256];
+    uint32_t capacity, crc, index_crc, offsets_crc, layers, depth, crc_table[256];
     uint64_t behind, index_offset, chunks, operations;
     double way;
     const uint8_t* end;

@@ -48,7 +48,7 @@ struct Verification {
     std::vector<Finding> findings;
 };
 
-// Takes 24 bytes for each layer, and a few 100 KB besides, however large the file is. What FileView cannot read has
+// Takes 32 bytes for each layer, and a few 100 KB besides, however large the file is. What FileView cannot read has
 // findings, too; its error() tells.
 Verification verify(FileView& file);
 Verification verify(std::span<const std::byte> file);

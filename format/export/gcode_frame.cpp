@@ -95,13 +95,26 @@ void append_totals(std::string& out, const FileHeader& header) {
     append_comment(out, "total layers count", std::to_string(sum.layers));
 }
 
+// Prusa's firmware shows an object's name. Marlin's own has none: it takes capitals for parameters, as the C that
+// leaves out the object at hand.
+std::string in_lower_case(std::string text) {
+    for (char& c : text)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return text;
+}
+
 void append_objects(std::string& out, const Metadata& data, GcodeFlavor flavor) {
     if (data.objects.empty()) return;
-    if (flavor == GcodeFlavor::marlin)
-        out += "M486 T" + std::to_string(data.objects.size()) + '\n';
-    else
-        for (std::uint32_t object = 1; object <= data.objects.size(); ++object)
-            out += "EXCLUDE_OBJECT_DEFINE NAME=" + object_label(data, object) + '\n';
+    const bool is_klipper = flavor == GcodeFlavor::klipper;
+    if (!is_klipper) out += "M486 T" + std::to_string(data.objects.size()) + '\n';
+    for (std::uint32_t object = 1; object <= data.objects.size(); ++object) {
+        const std::string label = object_label(data, object);
+        if (is_klipper)
+            out += "EXCLUDE_OBJECT_DEFINE NAME=" + label + '\n';
+        else
+            out += "M486 S" + std::to_string(object - 1) + "\nM486 A" + in_lower_case(label) + '\n';
+    }
+    if (!is_klipper) out += "M486 S-1\n";
 }
 
 void append_heat(std::string& out, const LayerState& state, bool wait, HeaterKind kind,

@@ -130,6 +130,12 @@ void append_bytes(std::string& text, const Statistics& s) {
                       grouped(s.operations).c_str(), grouped(s.chunks).c_str(),
                       grouped(s.hatch_runs).c_str(), grouped(s.hatch_travels).c_str(),
                       grouped(s.retractions).c_str());
+    const std::uint64_t intervals = (s.hatch_lines.count + s.hatch_travels) / 2;
+    if (intervals > 0)
+        text +=
+            formatted("%s hatch intervals of %.2f bytes each: a line and the way to it\n",
+                      grouped(intervals).c_str(),
+                      static_cast<double>(s.hatch_lines.bytes) / static_cast<double>(intervals));
 }
 
 void append_estimates(std::string& text, const Statistics& s) {

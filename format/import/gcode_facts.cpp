@@ -57,25 +57,41 @@ void take_comment(std::string_view comment, GcodeFacts& facts) {
     if (quantum_nm >= 1) facts.quantum.nm = static_cast<std::uint32_t>(quantum_nm);
 }
 
-// M486 S0 begins an object or, negative, ends it; M486 A is its name.
+// The name is that of the object whose number was stated last.
 void take_object(std::string_view line, GcodeFacts& facts, std::size_t& current) {
     const GcodeLine command = gcode_line(line);
-    if (command.command != "M486" || command.rest.empty()) return;
-    const std::string_view value = trimmed(command.rest.substr(1));
-    const char letter = command.rest[0];
+    if (command.command != "M486") return;
+    const ObjectMark mark = object_mark(command.rest);
     auto& numbers = facts.object_numbers;
-    if ((letter == 'A' || letter == 'a') && current < numbers.size())
-        facts.objects[current] = escaped(value);
-    if (letter != 'S' && letter != 's') return;
-    current = static_cast<std::size_t>(std::find(numbers.begin(), numbers.end(), value) -
-                                       numbers.begin());
-    const auto number = finite_number(value);
-    if (current < numbers.size() || !number || *number < 0) return;
-    numbers.emplace_back(value);
-    facts.objects.push_back("object " + std::to_string(numbers.size()));
+    if (!mark.number.empty()) {
+        current = static_cast<std::size_t>(std::find(numbers.begin(), numbers.end(), mark.number) -
+                                           numbers.begin());
+        const auto number = finite_number(mark.number);
+        if (current == numbers.size() && number && *number >= 0) {
+            numbers.emplace_back(mark.number);
+            facts.objects.push_back("object " + std::to_string(numbers.size()));
+        }
+    }
+    if (!mark.name.empty() && current < numbers.size()) facts.objects[current] = escaped(mark.name);
 }
 
 }  // namespace
+
+ObjectMark object_mark(std::string_view rest) {
+    const auto begins = [&](char letter) {
+        return !rest.empty() && (rest[0] == letter || rest[0] == letter - 'A' + 'a');
+    };
+    ObjectMark mark;
+    if (begins('S')) {
+        const std::size_t end = std::min(rest.size(), rest.find_first_not_of("+-.0123456789 ", 1));
+        mark.number = trimmed(rest.substr(1, end - 1));
+        rest.remove_prefix(end);
+    }
+    if (begins('A')) mark.name = trimmed(rest.substr(1));
+    const bool quoted = mark.name.size() >= 2 && mark.name[0] == '"' && mark.name.back() == '"';
+    if (quoted) mark.name = mark.name.substr(1, mark.name.size() - 2);
+    return mark;
+}
 
 bool begins_layer(std::string_view comment) {
     return comment == "LAYER_CHANGE" || comment == "CHANGE_LAYER" ||

@@ -27,6 +27,12 @@ GcodeFacts gcode_facts(std::string_view text);
 // Whether a comment begins a layer: those of PrusaSlicer and OrcaSlicer, Cura and Simplify3D.
 bool begins_layer(std::string_view comment);
 
+// Of M486: S0 begins an object, S-1 ends it, A is its name, as `S0 A"name"` or by itself. Empty: not there.
+struct ObjectMark {
+    std::string_view number{}, name{};
+};
+ObjectMark object_mark(std::string_view rest);
+
 // The name of the object that a command or comment begins; empty: none.
 std::string_view begun_object(std::string_view line);
 

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "base/constants.h"
 #include "format/import/gcode_import.h"
 #include "format/import/gcode_strand.h"
 
@@ -14,7 +15,6 @@ namespace {
 // A print may not go on at a height that is no finer stated than this.
 constexpr double same_z_mm = 1e-6;
 constexpr double widest_arc_rad = 1.5 * std::numbers::pi;
-constexpr double whole_turn_rad = 2 * std::numbers::pi;
 // Of a layer whose file says nothing of it and that lies on no other.
 constexpr double usual_height_mm = 0.2;
 // No strand is thicker: what is pushed on so short a way is pushed aside.
@@ -331,7 +331,7 @@ void GcodeLayers::encode_extrusion(const GcodeGo& go, LayerEncoder& encoder, Beg
 }
 
 void GcodeLayers::encode_arc(const GcodeGo& go, LayerEncoder& encoder) {
-    const bool is_circle = std::abs(go.sweep_rad) > whole_turn_rad - same_z_mm &&
+    const bool is_circle = std::abs(go.sweep_rad) > full_turn_rad - same_z_mm &&
                            go.from.x == go.to.x && go.from.y == go.to.y && go.from.z == go.to.z;
     if (is_circle) {
         encoder.circle(go.center_x, go.center_y, go.sweep_rad > 0);

@@ -60,6 +60,20 @@ TEST_CASE("lyrview --verify: a whole print, a damaged one, one that is cut, and 
     check_failure(folder.run("lyrview --verify missing.lyr"), 3, "missing.lyr");
 }
 
+TEST_CASE("lyrview: a file whose name says png, G-code or the like is not given something else") {
+    const Folder folder = with_prints("lyrview-endings");
+    const auto before = folder.files();
+    for (const char* name : {"a.png", "a.svg.gz", "a.pdf"})
+        check_failure(folder.run("lyrview a.lyr --layer 1 -o " + std::string(name)), 2,
+                      "--to FORMAT");
+    check_failure(folder.run("lyrview b.lyr --repair -o b.gcode"), 2, "say -o FILE.lyr");
+    check_failure(folder.run("lyrview a.lyr --thumbnail -o a.SVG"), 2, "say -o FILE.png");
+    CHECK(folder.files() == before);
+    CHECK(folder.run("lyrview a.lyr --layer 1 --to svg -o a.svgz.part").status == 0);
+    CHECK(folder.run("lyrview a.lyr --layer 1 -o picture").status == 0);
+    CHECK(folder.run("lyrview a.lyr --layer 1").out.starts_with("<svg"));
+}
+
 #ifndef __SANITIZE_ADDRESS__  // which needs the address space that is bounded here
 TEST_CASE("lyrview --verify, --repair: a file larger than memory is read piece by piece") {
     const Folder folder = with_prints("lyrview-verify-large");

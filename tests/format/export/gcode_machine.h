@@ -59,8 +59,9 @@ public:
     }
 
     std::vector<GcodeMove> moves;
-    std::map<std::string, int> commands;      // how often each
-    std::vector<std::string> comments;        // without the semicolon
+    std::map<std::string, int> commands;  // how often each
+    std::vector<std::string> comments;    // without the semicolon
+    std::vector<std::string> object_names;
     std::map<std::string, std::string> told;  // of commands with words, the last
     std::vector<int> percent;
 
@@ -73,6 +74,7 @@ private:
         if (!(in >> command)) return;
         ++commands[command];
         told[command] = line;
+        if (line.starts_with("M486 A")) return object_names.push_back(line.substr(6));
         std::map<char, double> words;
         const bool is_word = command[0] == 'G' || command[0] == 'M' || command[0] == 'T';
         for (std::string word; is_word && in >> word;) {

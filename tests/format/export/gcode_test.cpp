@@ -277,6 +277,17 @@ TEST_CASE("gcode: heads, layers and totals are where print servers look for them
     CHECK(machine.percent.back() == 100);
 }
 
+TEST_CASE("gcode: objects' names for Marlin have no capital, which it takes for a parameter") {
+    Metadata metadata;
+    metadata.objects = {"Part C", "\u00dcUT;P1 *"};
+    const std::string path = random_file(50, {1000}, metadata);
+    const std::string text = gcode_of(path, all_options[0]);
+    CHECK(text.find("\nM486 T2\nM486 S0\nM486 Apart_c_1\nM486 S1\nM486 A__ut_p1___2\nM486 S-1\n") !=
+          std::string::npos);
+    CHECK(GcodeMachine(text).object_names.size() == 2);
+    CHECK(gcode_of(path, all_options[2]).find("M486") == std::string::npos);
+}
+
 TEST_CASE("gcode: start lines have their placeholders filled, and heat instead of the head") {
     const std::string path = random_file(60, {1000});
     GcodeOptions options{

@@ -96,7 +96,7 @@ TEST_CASE("statistics 2: the figures of the worked example, and its text") {
     for (const char* part : {"part.lyr: .lyr 1.0, 462 bytes, whole\n", "plate.step",
                              "layers        1, z 0.200 to 0.200 mm, 0.2 mm thick",
                              "x 10.000 to 25.000, y 10.000 to 20.000", "outer wall", "solid infill",
-                             "nozzle 210, bed 60"})
+                             "nozzle 210, bed 60", "3 hatch intervals of "})
         CHECK_MESSAGE(text.find(part) != std::string::npos, text);
 }
 

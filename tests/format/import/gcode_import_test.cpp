@@ -333,6 +333,12 @@ TEST_CASE("gcode import: objects end where the file says, and M486 begins them")
     CHECK(objects(marlin) == std::vector<std::uint32_t>{1, 2, 0});
     CHECK(marlin.header.metadata.objects == std::vector<std::string>{"left one", "object 2"});
     CHECK(marlin.diagnostics.empty());
+    const Imported one_line =
+        imported("M486 T2\nM486 S0 A\"left S one\"\nM486 S-1\n" + begin +
+                 "G1 X20 E1\nM486 S0\nG1 X30 E1\nM486 S1 Aright\nG1 X40 E1\n");
+    CHECK(objects(one_line) == std::vector<std::uint32_t>{0, 1, 2});
+    CHECK(one_line.header.metadata.objects == std::vector<std::string>{"left S one", "right"});
+    CHECK(one_line.diagnostics.empty());
 }
 
 TEST_CASE("gcode import: heating without a temperature sets none, as Marlin") {
