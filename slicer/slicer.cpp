@@ -2,6 +2,7 @@
 
 #include "slicer/slicer.h"
 
+#include <future>
 #include <limits>
 
 #include "base/read_text.h"
@@ -9,6 +10,7 @@
 #include "kernel/brep/placement.h"
 #include "parser/import/import.h"
 #include "parser/part21/part21.h"
+#include "slicer/layers.h"
 #include "slicer/mend.h"
 #include "slicer/sha256.h"
 
@@ -34,7 +36,9 @@ Result<Model> load(const std::string& step_path, const Options& options, Diagnos
                    std::string* sha256) {
     auto file = open(step_path);
     if (!file) return file.error();
-    if (sha256) *sha256 = sha256_of(file->text());
+    // The bytes are read once more for their hash, beside all else.
+    auto hash = std::async(thread_count(options) > 1 ? std::launch::async : std::launch::deferred,
+                           [&] { return sha256 ? sha256_of(file->text()) : std::string(); });
     diagnostics.insert(diagnostics.end(), file->diagnostics().begin(), file->diagnostics().end());
     Diagnostics found;
     auto model = importer::import_model(*file, found);
@@ -43,6 +47,7 @@ Result<Model> load(const std::string& step_path, const Options& options, Diagnos
     for (Diagnostic& diagnostic : found) diagnostics.push_back(in_file(diagnostic, *file));
     if (!model) return model.error();
     if (!mended) return in_file(mended.error(), *file);
+    if (sha256) *sha256 = hash.get();
     return transformed(std::move(*model), turned_up(options.up));
 }
 
