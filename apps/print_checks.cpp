@@ -132,15 +132,15 @@ Status check_print(const CLI::App& app, const Program& program, const CheckReque
     const bool may_write = request.repair || request.thumbnail;
     if (writes && !may_write)
         return usage("-o goes with --repair or --thumbnail, not with --verify or --diff");
-    const auto named = export_format(output_path, "", std::nullopt);
-    if (request.repair && named && *named != ExportFormat::lyr)
-        return usage("--repair writes a print: say -o FILE.lyr");
-    if (request.thumbnail && named) return usage("--thumbnail writes a picture: say -o FILE.png");
     const char* what = request.thumbnail ? "the picture" : "the repaired print";
     if (const Status apart =
             check_apart({{"the print", lyr_path}}, {{what, may_write ? output_path : ""}});
         !apart)
         return apart;
+    const auto named = export_format(output_path, "", std::nullopt);
+    if (request.repair && named && *named != ExportFormat::lyr)
+        return usage("--repair writes a print: say -o FILE.lyr");
+    if (request.thumbnail && named) return usage("--thumbnail writes a picture: say -o FILE.png");
     const SignalWatch watch(program.name);
     if (request.verify) return verify_print(lyr_path);
     if (request.repair) return repair_print(lyr_path, output_path);
