@@ -1,13 +1,17 @@
-// The words of a command line: options with their values, and words that stand alone.
+// The words of a command line: options with their values, and words that stand alone. The C library's getopt_long() takes
+// them apart; as it keeps its place in global variables, one command line is read at a time.
 //
 // Contract
 //  1. "--name VALUE", "--name=VALUE", "-n VALUE" and "-nVALUE" say the same. The value is any word, also one that begins
 //     with a dash, but where it may be left out: there such a word is the next option.
+//     A name may be cut short while it is clear.
 //  2. Words that stand alone may be anywhere, and all are that after "--". A dash alone is one of them, and so is -5.
 //  3. Each option is given once, but for those that repeat. What is wrong first is the error; what follows it is read
 //     nevertheless, so that --help is always understood.
 
 #pragma once
+
+#include <getopt.h>
 
 #include <cstddef>
 #include <functional>
@@ -50,10 +54,19 @@ private:
         std::size_t count = 0;
     };
 
+    // For getopt_long().
+    struct Grammar {
+        std::string short_names;
+        std::vector<::option> long_names;
+    };
+
+    static Grammar grammar_of(const std::vector<Known>& known);
+    std::size_t index_of(int code) const;
     std::size_t index_of(std::string_view name) const;
     Status give(Known& known, const std::string& value);
     Status take_alone(const std::string& word);
-    Status take_option(const std::string& word, std::span<char* const>& after);
+    Status take(int found, const char* word, const char* next);
+    Status refused(int found, const char* word) const;
 
     std::vector<Known> known_;
 };

@@ -90,6 +90,8 @@ TEST_CASE("options: each way to say a value") {
     CHECK(values({"--set", "a", "w", "--set=b"}) == "set(a)word(w)set(b)");
     CHECK(values({"--", "--flag"}) == "word(--flag)");
     CHECK(values({"-5"}) == "word(-5)");
+    CHECK(values({"--flag", "-5"}) == "word(-5)flag");
+    CHECK(values({"--outp", "a"}) == "output(a)");
     CHECK(values({}).empty());
 }
 
@@ -107,7 +109,7 @@ TEST_CASE("options: the first mistake is the error, and the rest is read") {
     CHECK(error({"-o", "a", "-ob"}) == "--output: expected one value, once");
     CHECK(error({"--flag=1"}) == "--flag: takes no value");
     CHECK(error({"-x"}) == "unknown option \"-x\"");
-    CHECK(error({"--outpu", "a"}) == "unknown option \"--outpu\"");
+    CHECK(error({"--outputs=a"}) == "unknown option \"--outputs\"");
     CHECK(error({"--word", "a"}) == "unknown option \"--word\"");
     CHECK(error({"a", "b"}) == "unexpected argument \"b\"");
     CHECK(error({"--", "a", "--"}) == "unexpected argument \"--\"");
