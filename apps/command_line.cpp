@@ -1,5 +1,4 @@
-// CLI11 splits the words into options; values are taken as text and read here, so that every program refuses the same
-// things in the same words.
+// Values are taken as text and read here, so that every program refuses the same things in the same words.
 
 #include "apps/command_line.h"
 
@@ -53,40 +52,12 @@ void make_signals_errors() {
     for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
 }
 
-// CLI11's words for the user's mistakes, turned into ours.
-Diagnostic usage_error(const CLI::App& app, const CLI::ParseError& error) {
-    const std::string text = error.what();
-    if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
-        for (const std::string& word : app.remaining())
-            if (word != "--")
-                return usage((word.starts_with('-') ? "unknown option " : "unexpected argument ") +
-                             in_quotes(word));
-    }
-    if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) == nullptr) return usage(text);
-    // CLI11 begins with the option's name and a colon, but for flags, whose name it says without dashes.
-    const std::size_t end = text.find_first_of(": ");
-    return text[end] == ':' ? usage(text.substr(0, end) + ": expected one value, once")
-                            : usage("--" + text.substr(0, end) + ": takes no value");
-}
-
-// Whether there is work to do.
-Result<bool> parse(CLI::App& app, int argc, char** argv) {
-    std::string answer;
-    try {
-        app.parse(argc, argv);
-        return true;
-    } catch (const CLI::CallForHelp&) {
-        answer = app.help();
-    } catch (const CLI::CallForVersion& version) {
-        answer = std::string(version.what()) + '\n';
-    } catch (const CLI::ParseError& error) {
-        return usage_error(app, error);
-    }
+// Writes an answer of the program itself.
+Status say(const std::string& text) {
     auto out = ReplaceFile::open("-");
     if (!out) return out.error();
-    out->write(answer);
-    if (const Status written = out->commit(); !written) return written.error();
-    return false;
+    out->write(text);
+    return out->commit();
 }
 
 std::string limits_of(const NumberRange& range) {
@@ -110,22 +81,33 @@ bool take_numbers(std::string_view text, std::span<double> values, const NumberR
     return true;
 }
 
+Status parse_and_work(const Program& program, std::span<char* const> words,
+                      const std::function<void(Options&)>& add_options,
+                      const std::function<Status(const Options&)>& work) {
+    Options options;
+    bool help = false, version = false;
+    add_flag(options, "-h,--help", help, "Print this help message and exit");
+    add_flag(options, "--version", version, "Display program version information and exit");
+    add_options(options);
+    const Status parsed = options.parse(words);
+    if (help)
+        return say(program.purpose + std::string(1, '\n') + options.help(program.name) + '\n' +
+                   program.examples + '\n');
+    if (version) return say(program.name + std::string(" " LYR_VERSION "\n"));
+    return parsed ? work(options) : parsed;
+}
+
 }  // namespace
 
 int run_main(const Program& program, int argc, char** argv,
-             const std::function<void(CLI::App&)>& add_options,
-             const std::function<Status(const CLI::App&)>& work) {
+             const std::function<void(Options&)>& add_options,
+             const std::function<Status(const Options&)>& work) {
     // Nothing of this project throws; what the standard library throws (no memory) ends here.
     try {
         keep_standard_descriptors();
         make_signals_errors();
-        CLI::App app(program.purpose, program.name);
-        app.footer(program.examples);
-        app.set_version_flag("--version", program.name + std::string(" " LYR_VERSION));
-        add_options(app);
-        const Result<bool> parsed = parse(app, argc, argv);
-        if (!parsed) return fail(program, parsed.error());
-        const Status done = *parsed ? work(app) : Status(Done{});
+        const auto all = std::span(argv, static_cast<std::size_t>(argc));
+        const Status done = parse_and_work(program, all.subspan(argc > 0), add_options, work);
         return done ? static_cast<int>(ExitStatus::ok) : fail(program, done.error());
     } catch (const std::bad_alloc&) {
         return fail(program, {Severity::error, ExitStatus::internal, "out of memory", {}});
@@ -138,10 +120,6 @@ int run_main(const Program& program, int argc, char** argv,
     } catch (const std::exception& error) {
         return fail(program, {Severity::error, ExitStatus::internal, error.what(), {}});
     }
-}
-
-Diagnostic usage(const std::string& message) {
-    return {Severity::error, ExitStatus::usage, message, {}};
 }
 
 std::vector<std::size_t> most_telling(const Diagnostics& diagnostics, std::size_t most) {
@@ -163,37 +141,35 @@ void show(const Program& program, const Diagnostics& diagnostics) {
                      diagnostics.size() - shown.size());
 }
 
-CLI::Option* add_text(CLI::App& app, const std::string& option, const char* shape, TakeText take,
-                      const std::string& text) {
-    const std::string name = option.substr(option.find(',') + 1);
-    const auto read = [name, take = std::move(take)](const std::string& value) {
-        if (const auto expected = take(value))
-            throw CLI::ValidationError(name,
-                                       "expected " + *expected + ", found " + in_quotes(value));
-    };
-    return app.add_option_function<std::string>(option, read, text)->option_text(shape);
+void add_text(Options& options, const std::string& option, const char* shape, TakeText take,
+              const std::string& text) {
+    options.add({option, shape, std::move(take), text});
 }
 
-CLI::Option* add_texts(CLI::App& app, const std::string& option, const char* shape, TakeText take,
-                       const std::string& text) {
-    return add_text(app, option, shape, std::move(take), text)->trigger_on_parse();
+void add_texts(Options& options, const std::string& option, const char* shape, TakeText take,
+               const std::string& text) {
+    options.add({option, shape, std::move(take), text, true});
 }
 
-CLI::Option* add_file(CLI::App& app, const std::string& option, std::string& path,
-                      const std::string& text) {
+void add_file(Options& options, const std::string& option, std::string& path,
+              const std::string& text) {
     const auto take = [&path](const std::string& value) -> std::optional<std::string> {
         if (value.empty()) return "the name of a file";
         path = value;
         return std::nullopt;
     };
-    return add_text(app, option, "FILE", take, text);
+    add_text(options, option, "FILE", take, text);
 }
 
-void add_flag(CLI::App& app, const std::string& option, bool& flag, const std::string& text) {
-    app.add_flag(option, flag, text)->disable_flag_override();
+void add_flag(Options& options, const std::string& option, bool& flag, const std::string& text) {
+    const auto take = [&flag](const std::string&) {
+        flag = true;
+        return std::optional<std::string>();
+    };
+    add_texts(options, option, "", take, text);
 }
 
-void add_numbers(CLI::App& app, const std::string& option, const char* shape,
+void add_numbers(Options& options, const std::string& option, const char* shape,
                  std::span<double> values, const NumberRange& range, const std::string& text) {
     const auto take = [=](const std::string& value) -> std::optional<std::string> {
         if (take_numbers(value, values, range)) return std::nullopt;
@@ -203,10 +179,10 @@ void add_numbers(CLI::App& app, const std::string& option, const char* shape,
     std::string shown = std::string(shape) + "  [";
     for (const double& value : values) shown += (&value == &values[0] ? "" : ",") + shortest(value);
     shown += ']';
-    add_text(app, option, shown.c_str(), take, text + "; " + limits_of(range));
+    add_text(options, option, shown.c_str(), take, text + "; " + limits_of(range));
 }
 
-void add_count(CLI::App& app, const std::string& option, const char* shape, std::uint32_t& value,
+void add_count(Options& options, const std::string& option, const char* shape, std::uint32_t& value,
                const CountRange& range, const std::string& text) {
     const auto take = [&value, range](const std::string& word) -> std::optional<std::string> {
         std::uint32_t count = 0;
@@ -221,7 +197,7 @@ void add_count(CLI::App& app, const std::string& option, const char* shape, std:
             expected += " to " + std::to_string(range.high);
         return expected;
     };
-    add_text(app, option, shape, take, text);
+    add_text(options, option, shape, take, text);
 }
 
 }  // namespace lyr::command_line

@@ -51,8 +51,14 @@ constexpr Program program{
     "Exit status: 0 done, 2 options, 6 output, 7 no printer is at work, it cannot do this now, or\n"
     "(--watch) the print failed, 8 stopped on request.\n"};
 
-void add_options(CLI::App& app, Arguments& arguments) {
-    app.add_option("command", arguments.words, "What to do; see below")->option_text("COMMAND ...");
+void add_options(Options& app, Arguments& arguments) {
+    add_texts(
+        app, "command", "COMMAND ...",
+        [&](const std::string& word) {
+            arguments.words.push_back(word);
+            return std::optional<std::string>();
+        },
+        "What to do; see below");
     add_file(app, "--socket", arguments.socket,
              "The printer's socket, where there are several, or one in another place");
     add_flag(app, "--json", arguments.json, "status: one JSON object, a line each with --watch");
@@ -214,6 +220,6 @@ Status work(const Arguments& arguments) {
 int main(int argc, char** argv) {
     Arguments arguments;
     return run_main(
-        program, argc, argv, [&](CLI::App& app) { add_options(app, arguments); },
-        [&](const CLI::App&) { return work(arguments); });
+        program, argc, argv, [&](Options& app) { add_options(app, arguments); },
+        [&](const Options&) { return work(arguments); });
 }

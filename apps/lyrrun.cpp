@@ -84,7 +84,7 @@ std::optional<Arguments::Tune> tune_of(const std::string& value) {
     return Arguments::Tune{static_cast<std::size_t>(name - names.begin()), *target_c};
 }
 
-void add_options(CLI::App& app, Arguments& arguments) {
+void add_options(Options& app, Arguments& arguments) {
     add_file(app, "print", arguments.lyr_path,
              "The .lyr file that stepc wrote; it is read more than once, so that it cannot be -, "
              "standard input");
@@ -374,6 +374,6 @@ Status work(const Arguments& arguments) {
 int main(int argc, char** argv) {
     Arguments arguments;
     return run_main(
-        program, argc, argv, [&](CLI::App& app) { add_options(app, arguments); },
-        [&](const CLI::App&) { return work(arguments); });
+        program, argc, argv, [&](Options& app) { add_options(app, arguments); },
+        [&](const Options&) { return work(arguments); });
 }

@@ -30,7 +30,7 @@ Status measure(const Program& program, const BoardArguments& arguments,
 
 }  // namespace
 
-void add_board_options(CLI::App& app, BoardArguments& arguments) {
+void add_board_options(Options& app, BoardArguments& arguments) {
     add_flag(app, "--check", arguments.check,
              "Look whether this board has the lines, sensors and rights that the printer's file "
              "asks for, in place of a print; nothing moves");

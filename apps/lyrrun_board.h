@@ -15,7 +15,7 @@ struct BoardArguments {
     bool given() const { return check || measure || lines; }
 };
 
-void add_board_options(CLI::App& app, BoardArguments& arguments);
+void add_board_options(Options& app, BoardArguments& arguments);
 
 // What the options ask for; the report on standard output.
 Status work_board(const Program& program, const BoardArguments& arguments,

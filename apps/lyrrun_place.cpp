@@ -75,7 +75,7 @@ Status calibrate(const Program& program, std::vector<home::Calibration> wanted, 
 
 }  // namespace
 
-void add_place_options(CLI::App& app, PlaceArguments& arguments) {
+void add_place_options(Options& app, PlaceArguments& arguments) {
     add_text(
         app, "--home", "[AXES]",
         [&arguments](const std::string& value) -> std::optional<std::string> {
@@ -84,8 +84,7 @@ void add_place_options(CLI::App& app, PlaceArguments& arguments) {
             return std::nullopt;
         },
         "Find where the head is, by endstops and probe, in place of a print; without AXES all "
-        "axes that have one")
-        ->expected(0, 1);
+        "axes that have one");
     add_text(
         app, "--jog", "x=MM,y=MM,z=MM",
         [&arguments](const std::string& value) -> std::optional<std::string> {
@@ -111,8 +110,7 @@ void add_place_options(CLI::App& app, PlaceArguments& arguments) {
         "Measure with the probe its own height, a delta's frame or the bed's heights (probe, "
         "delta, "
         "mesh), and keep it in the printer's calibration_file; without WHAT a delta's frame and "
-        "the heights")
-        ->expected(0, 1);
+        "the heights");
 }
 
 Status work_place(const Program& program, const PlaceArguments& arguments, const home::Job& job) {

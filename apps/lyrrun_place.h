@@ -17,7 +17,7 @@ struct PlaceArguments {
     bool given() const { return home || jog_mm || calibrate; }
 };
 
-void add_place_options(CLI::App& app, PlaceArguments& arguments);
+void add_place_options(Options& app, PlaceArguments& arguments);
 
 // What the options ask for; the report on standard output.
 Status work_place(const Program& program, const PlaceArguments& arguments, const home::Job& job);

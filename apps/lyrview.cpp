@@ -65,7 +65,7 @@ constexpr Program program{
     "request,\n"
     "9 the prints of --diff differ.\n"};
 
-void add_gcode(CLI::App& app, GcodeRequest& gcode) {
+void add_gcode(Options& app, GcodeRequest& gcode) {
     const auto into = [](std::string& value, const char* choices) {
         return [&value, choices](const std::string& text) {
             value = text;
@@ -85,7 +85,7 @@ void add_gcode(CLI::App& app, GcodeRequest& gcode) {
              "Lines to end it with, instead of the print's gcode.end");
 }
 
-void add_options(CLI::App& app, Arguments& arguments) {
+void add_options(Options& app, Arguments& arguments) {
     add_file(app, "print", arguments.lyr_path, "The .lyr file that stepc wrote; -: standard input");
     add_file(app, "--from-gcode", arguments.gcode_path,
              "Instead of a print: G-code of any slicer, to write as a print (-o FILE.lyr); -: "
@@ -161,7 +161,7 @@ bool is_asked_more(const Arguments& arguments) {
 }
 
 // Which options go together.
-Status check(const CLI::App& app, const Arguments& arguments, std::optional<ExportFormat> format) {
+Status check(const Options& app, const Arguments& arguments, std::optional<ExportFormat> format) {
     const bool draws = arguments.layer > 0 || arguments.all_layers;
     const bool is_picture = format && is_drawing(*format);
     const char* what = draws                          ? "the picture"
@@ -180,7 +180,7 @@ Status check(const CLI::App& app, const Arguments& arguments, std::optional<Expo
 }
 
 // From G-code to a print.
-Status bring_in(const CLI::App& app, const Arguments& arguments) {
+Status bring_in(const Options& app, const Arguments& arguments) {
     std::string ending = std::filesystem::path(arguments.output_path).extension().string();
     for (char& c : ending)
         if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
@@ -202,7 +202,7 @@ Status bring_in(const CLI::App& app, const Arguments& arguments) {
     return tell(*text, {output});
 }
 
-Status work(const CLI::App& app, const Arguments& arguments) {
+Status work(const Options& app, const Arguments& arguments) {
     if (arguments.lyr_path.empty() && arguments.gcode_path.empty())
         return usage("print is required");
     if (arguments.gcode_path.empty() && app.count("--filament-diameter") > 0)
@@ -235,6 +235,6 @@ Status work(const CLI::App& app, const Arguments& arguments) {
 int main(int argc, char** argv) {
     Arguments arguments;
     return run_main(
-        program, argc, argv, [&](CLI::App& app) { add_options(app, arguments); },
-        [&](const CLI::App& app) { return work(app, arguments); });
+        program, argc, argv, [&](Options& app) { add_options(app, arguments); },
+        [&](const Options& app) { return work(app, arguments); });
 }

@@ -112,7 +112,7 @@ Status write_thumbnail(const std::string& path, const std::string& output) {
 
 }  // namespace
 
-void add_checks(CLI::App& app, CheckRequest& request) {
+void add_checks(Options& app, CheckRequest& request) {
     add_flag(app, "--verify", request.verify,
              "Check the file to its last byte and say what is damaged or missing");
     add_flag(app, "--repair", request.repair,
@@ -123,7 +123,7 @@ void add_checks(CLI::App& app, CheckRequest& request) {
              "How the print differs from this one: metadata, settings, layers, totals");
 }
 
-Status check_print(const CLI::App& app, const Program& program, const CheckRequest& request,
+Status check_print(const Options& app, const Program& program, const CheckRequest& request,
                    const std::string& lyr_path, const std::string& output_path, bool others) {
     const bool diffs = !request.diff_path.empty(), writes = app.count("--output") > 0;
     if (others || request.verify + request.repair + request.thumbnail + diffs > 1)

@@ -17,11 +17,11 @@ struct CheckRequest {
     bool any() const { return verify || repair || thumbnail || !diff_path.empty(); }
 };
 
-void add_checks(CLI::App& app, CheckRequest& request);
+void add_checks(Options& app, CheckRequest& request);
 
 // `others`: options of the command line that are not for these. Errors: the print is damaged or missing (input), of a newer
 // version (unsupported), the two differ (differs), not writable (output), options that do not go together (usage).
-Status check_print(const CLI::App& app, const Program& program, const CheckRequest& request,
+Status check_print(const Options& app, const Program& program, const CheckRequest& request,
                    const std::string& lyr_path, const std::string& output_path, bool others);
 
 }  // namespace lyr::command_line

@@ -74,7 +74,7 @@ constexpr Program program{
 // Only the direction counts; no vector that means one is longer.
 constexpr NumberRange direction{-1'000, 1'000, ""};
 
-void add_files(CLI::App& app, Arguments& arguments) {
+void add_files(Options& app, Arguments& arguments) {
     add_file(app, "part", arguments.step_path,
              "STEP file (ISO 10303-21; AP203, AP214, AP242); -: standard input");
     add_file(app, "-o,--output", arguments.output_path,
@@ -96,8 +96,8 @@ void add_files(CLI::App& app, Arguments& arguments) {
 }
 
 // An option that is short for --set of one key. The key's own rules say what it takes.
-void add_shorthand(CLI::App& app, Arguments& arguments, const std::string& option,
-                   const char* shape, const std::string& key, const std::string& text) {
+void add_shorthand(Options& app, Arguments& arguments, const std::string& option, const char* shape,
+                   const std::string& key, const std::string& text) {
     const auto take = [&arguments, option, key](const std::string& value) {
         arguments.settings.settings.push_back({key, value, option});
         return std::optional<std::string>();
@@ -106,7 +106,7 @@ void add_shorthand(CLI::App& app, Arguments& arguments, const std::string& optio
 }
 
 // How fine adaptive layers are, which it asks for.
-void add_cusp(CLI::App& app, Arguments& arguments) {
+void add_cusp(Options& app, Arguments& arguments) {
     const auto take = [&arguments](const std::string& value) {
         arguments.settings.settings.push_back({"layer.adaptive", "true", "--cusp"});
         arguments.settings.settings.push_back({"layer.cusp", value, "--cusp"});
@@ -118,7 +118,7 @@ void add_cusp(CLI::App& app, Arguments& arguments) {
         "layer.cusp=MM");
 }
 
-void add_settings(CLI::App& app, Arguments& arguments) {
+void add_settings(Options& app, Arguments& arguments) {
     std::string built_in;
     for (const std::string& name : profile::built_in_names())
         built_in += (built_in.empty() ? "" : ", ") + name;
@@ -143,7 +143,7 @@ void add_settings(CLI::App& app, Arguments& arguments) {
                   "Where on the bed the part's corner lies");
 }
 
-void add_options(CLI::App& app, Arguments& arguments) {
+void add_options(Options& app, Arguments& arguments) {
     slicer::Options& options = arguments.options;
     add_files(app, arguments);
     add_settings(app, arguments);
@@ -304,6 +304,6 @@ Status work(Arguments& arguments) {
 int main(int argc, char** argv) {
     Arguments arguments;
     return run_main(
-        program, argc, argv, [&](CLI::App& app) { add_options(app, arguments); },
-        [&](const CLI::App&) { return work(arguments); });
+        program, argc, argv, [&](Options& app) { add_options(app, arguments); },
+        [&](const Options&) { return work(arguments); });
 }

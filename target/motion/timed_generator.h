@@ -16,18 +16,11 @@
 
 #pragma once
 
+#include "target/motion/shaping.h"
 #include "target/motion/step_generator.h"
 #include "target/motion/time_walk.h"
 
 namespace lyr::motion {
-
-// The taps of x, y and z apart; a machine's motors may mix them.
-struct Shaping {
-    std::array<Taps, axis_e> axes;            // each with weights of one channel; empty: as planned
-    Taps extruder;                            // of filament and pressed filament; empty: as planned
-    std::array<double, axis_e> play_steps{};  // of the motors
-    std::shared_ptr<const BedMesh> bed{};  // by which z is lifted after all that; none: a flat one
-};
 
 class TimedGenerator {
 public:
