@@ -14,12 +14,25 @@ namespace {
 struct Contradiction {
     std::string_view first, relation, second;
     bool (*holds)(const Profile&);
+    std::string_view advice = "";
 };
+
+// Beyond that much of its bore, nothing of a nozzle is over a line to press it flat: it is laid down as a round string,
+// with gaps beside it. (PrusaSlicer draws the line there too.)
+constexpr double widest_bores = 3;
+
+// So that 2.1 is three times 0.7.
+constexpr double round_off_mm = 1e-9;
+
+bool is_too_wide(double width_mm, const Profile& profile) {
+    return width_mm > widest_bores * profile.nozzle.diameter_mm + round_off_mm;
+}
 
 // A nozzle presses a line flat, which it cannot if the line is thicker than its bore; and a line's cross-section with
 // rounded flanks is at least as wide as it is high.
 constexpr std::string_view above = "is more than";
 constexpr std::string_view below = "is less than";
+constexpr std::string_view too_wide = "is more than three times";
 constexpr Contradiction contradictions[] = {
     {"layer.height", above, "nozzle.diameter",
      [](const Profile& p) { return p.layer.height_mm > p.nozzle.diameter_mm; }},
@@ -57,6 +70,18 @@ constexpr Contradiction contradictions[] = {
      [](const Profile& p) { return p.perimeters.min_width_mm > p.perimeters.max_width_mm; }},
     {"perimeters.min_gap", above, "perimeters.max_width",
      [](const Profile& p) { return p.perimeters.min_gap_mm > p.perimeters.max_width_mm; }},
+    {"perimeters.width", too_wide, "nozzle.diameter",
+     [](const Profile& p) { return is_too_wide(p.perimeters.width_mm, p); },
+     ": no nozzle lays so wide a line; for thicker walls set perimeters.count"},
+    {"skin.width", too_wide, "nozzle.diameter",
+     [](const Profile& p) { return is_too_wide(p.skin.width_mm, p); },
+     ": no nozzle lays so wide a line"},
+    {"infill.width", too_wide, "nozzle.diameter",
+     [](const Profile& p) { return is_too_wide(p.infill.width_mm, p); },
+     ": no nozzle lays so wide a line"},
+    {"perimeters.max_width", too_wide, "nozzle.diameter",
+     [](const Profile& p) { return is_too_wide(p.perimeters.max_width_mm, p); },
+     ": no nozzle lays so wide a line"},
     {"fan.min", above, "fan.max", [](const Profile& p) { return p.fan.min > p.fan.max; }},
     {"fan.min_layer_time", above, "fan.ramp_time",
      [](const Profile& p) { return p.fan.min_layer_time_s > p.fan.ramp_time_s; }},
@@ -92,7 +117,7 @@ Status check(const Resolved& resolved) {
                                resolved.origins[b].kind == Origin::Kind::option;
         return Diagnostic{Severity::error, by_option ? ExitStatus::usage : ExitStatus::input,
                           stated(resolved, a) + ' ' + std::string(contradiction.relation) + ' ' +
-                              stated(resolved, b),
+                              stated(resolved, b) + std::string(contradiction.advice),
                           by_option ? Location{} : place(resolved, {a, b})};
     }
     return Done{};

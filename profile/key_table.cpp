@@ -1,5 +1,6 @@
 // The keys, section by section, with the field's names, ranges that no machine of this kind leaves, and a line of help.
 
+#include <algorithm>
 #include <cmath>
 
 #include "profile/keys.h"
@@ -84,6 +85,15 @@ void add_layer(std::vector<Key>& keys) {
                    [](Profile& p) { p.layer.max_height_mm = times(p.nozzle.diameter_mm, 0.75); });
 }
 
+// Two walls side by side do not fit into what is narrower than 7/4 of their width (kernel/toolpath/walls.h): one line has to,
+// as far as a nozzle lays it.
+void set_max_width(Profile& p) {
+    const double nozzle_mm = p.nozzle.diameter_mm;
+    const double needed_mm = times(p.perimeters.width_mm, 1.75);
+    p.perimeters.max_width_mm =
+        std::max(times(nozzle_mm, 2), std::min({needed_mm, times(nozzle_mm, 3), width_mm.high}));
+}
+
 void add_perimeters(std::vector<Key>& keys) {
     Section(keys, "perimeters", &Profile::perimeters)
         .count("count", &Perimeters::count, {0, 1000}, "How many walls")
@@ -108,8 +118,7 @@ void add_perimeters(std::vector<Key>& keys) {
                    [](Profile& p) { p.perimeters.min_gap_mm = times(p.nozzle.diameter_mm, 0.25); })
         .number("max_width", &Perimeters::max_width_mm, mm, width_mm,
                 "Widest line of thin walls and gap fill")
-        .otherwise("2 x nozzle.diameter",
-                   [](Profile& p) { p.perimeters.max_width_mm = times(p.nozzle.diameter_mm, 2); })
+        .otherwise("2 x nozzle.diameter, or what perimeters.width asks for", set_max_width)
         .choice("seam", &Perimeters::seam, Names(seam_names),
                 "Where walls begin: near the last one's end, at the rear, above each other, at "
                 "sharp corners")

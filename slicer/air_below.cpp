@@ -3,6 +3,7 @@
 #include "slicer/air_below.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "base/text.h"
@@ -26,6 +27,7 @@ struct AirBelow {
     Contour first_island{};
     double hanging_mm2 = 0;
     Point2 hanging_at = Point2::Zero();
+    std::size_t unresolved = 0;
 };
 
 Point2 middle_of(const Contour& contour) {
@@ -42,6 +44,7 @@ public:
           allowed_mm_(options.tolerance().unite_mm()) {}
 
     AirBelow found() {
+        if (!layer_.seen.is_finite() || !below_.seen.is_finite()) return {.unresolved = 1};
         const double longest_mm = layer_.seen.rows().without(below_.seen.rows()).longest_mm();
         if (longest_mm < pitch_mm_ && !has_small_island()) return {};
         const std::vector<Contour> held = without_islands();
@@ -77,20 +80,26 @@ private:
     }
 
     // Where rows miss what is narrow.
-    bool is_held(Region island) const {
-        const RegionResult common =
-            combined(island, below_.outline, Operation::intersect, allowed_mm_);
-        return area_mm2(common.contours) > 0;
+    bool is_held(Region island) {
+        return area_mm2(combined_with_below(island, Operation::intersect)) > 0;
     }
 
-    // What regions cannot be worked out of is warned of where the layer is filled.
+    std::vector<Contour> combined_with_below(Region region, Operation operation) {
+        RegionResult result = combined(region, below_.outline, operation, allowed_mm_);
+        found_.unresolved += result.unresolved;
+        return std::move(result.contours);
+    }
+
+    std::vector<Contour> offset_by(Region region, double distance_mm) {
+        OffsetResult result =
+            offset(region, {.distance_mm = distance_mm, .allowed_mm = allowed_mm_});
+        found_.unresolved += result.unresolved.has_value();
+        return std::move(result.contours);
+    }
+
     void find_hanging(Region held, double reach_mm) {
         if (held.empty()) return;
-        const auto offset_by = [&](Region region, double distance_mm) {
-            return offset(region, {.distance_mm = distance_mm, .allowed_mm = allowed_mm_}).contours;
-        };
-        const std::vector<Contour> over_air =
-            combined(held, below_.outline, Operation::subtract, allowed_mm_).contours;
+        const std::vector<Contour> over_air = combined_with_below(held, Operation::subtract);
         const std::vector<Contour> wide =
             offset_by(offset_by(over_air, -reach_mm / 2), reach_mm / 2);
         for (const std::vector<Contour>& part : parts_of(wide)) {
@@ -127,6 +136,7 @@ public:
             if (islands_ == 0) first_island_ = {layer, std::move(found.first_island)};
             islands_ += found.islands;
         }
+        if (found.unresolved > 0 && unresolved_layers_++ == 0) first_unresolved_ = layer;
         if (found.hanging_mm2 == 0) return;
         if (hanging_layers_++ == 0) first_hanging_ = {layer, found.hanging_at};
         most_mm2_ = std::max(most_mm2_, found.hanging_mm2);
@@ -134,16 +144,17 @@ public:
 
     void finish(std::span<const LayerSpan> spans, const Model& model, const Cutter& cutter,
                 Diagnostics& diagnostics) const {
-        const auto warn = [&](const std::string& message, std::size_t layer, const Point2& at,
-                              SourceId entity) {
-            diagnostics.push_back({Severity::warning,
-                                   ExitStatus::geometry,
-                                   message + " (support.kind is none)",
-                                   {.entity = entity,
-                                    .layer = static_cast<int>(layer + 1),
-                                    .x_mm = at.x(),
-                                    .y_mm = at.y(),
-                                    .z_mm = spans[layer].middle_mm()}});
+        const auto warn = [&](const std::string& message, std::size_t layer,
+                              std::optional<Point2> at, SourceId entity) {
+            Location where{.entity = entity,
+                           .layer = static_cast<int>(layer + 1),
+                           .z_mm = spans[layer].middle_mm()};
+            if (at) {
+                where.x_mm = at->x();
+                where.y_mm = at->y();
+            }
+            diagnostics.push_back({Severity::warning, ExitStatus::geometry,
+                                   message + " (support.kind is none)", where});
         };
         if (islands_ > 0) {
             const auto& [layer, island] = first_island_;
@@ -158,13 +169,17 @@ public:
         if (hanging_layers_ > 0)
             warn("in " + counted(hanging_layers_, "layer") + formatted(most_text, most_mm2_),
                  first_hanging_.first, first_hanging_.second, 0);
+        if (unresolved_layers_ > 0)
+            warn("in " + counted(unresolved_layers_, "layer") +
+                     ", first here, it could not be worked out what hangs over air",
+                 first_unresolved_, std::nullopt, 0);
     }
 
 private:
     static constexpr const char* most_text =
         " the part reaches far out over air without being a bridge, first here; by up to %.3g mm2";
 
-    std::size_t islands_ = 0, hanging_layers_ = 0;
+    std::size_t islands_ = 0, hanging_layers_ = 0, unresolved_layers_ = 0, first_unresolved_ = 0;
     double most_mm2_ = 0;
     std::pair<std::size_t, Contour> first_island_{};
     std::pair<std::size_t, Point2> first_hanging_{};

@@ -6,6 +6,7 @@
 //  2. What reaches further out over air than a few lines side by side carry, and is no bridge (bridges.h), hangs over: one
 //     warning for the print, with the first place, the number of layers, and the area in the layer with most of it.
 //  3. The lowest layer lies on the bed or the raft.
+//  4. Where it cannot be worked out, there is one warning for the print, with the number of layers and the first one.
 
 #pragma once
 

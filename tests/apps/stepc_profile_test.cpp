@@ -108,6 +108,9 @@ TEST_CASE("stepc --profile, --set: what is wrong is told in one line, and nothin
     refused("--layer-height 0.2 --set layer.height=0.2", 2, "leave one out");
     refused("--layer-height 0.5", 2,
             "layer.height = 0.5 (--layer-height) is more than nozzle.diameter = 0.4 (default)");
+    refused(
+        "--set perimeters.width=5", 2,
+        "perimeters.width = 5 (--set) is more than three times nozzle.diameter = 0.4 (default)");
     refused("--profile ''", 2, "--profile: expected the name of a file");
     refused("--profile wrong.toml", 3, "wrong.toml:5:1: error: unknown key `infil.density`");
     refused("--profile cycle.toml", 3, "cycle.toml:1:1: error: inherits itself: ");

@@ -253,6 +253,39 @@ TEST_CASE("resolve 4: values that contradict each other are told with both origi
     CHECK(error.where.line == 3);
 }
 
+TEST_CASE("lines 5 mm wide were sliced for a nozzle of 0.4 mm without a word") {
+    for (const std::string key :
+         {"perimeters.width", "skin.width", "infill.width", "perimeters.max_width"}) {
+        CAPTURE(key);
+        CHECK(resolve({{}, {set(key, "1.2")}}).ok());
+        error_of({{}, {set(key, "1.21")}}, usage,
+                 key + " = 1.21 (--set) is more than three times nozzle.diameter = 0.4 (default)");
+        CHECK(resolve({{}, {set(key, "2.1"), set("nozzle.diameter", "0.7")}}).ok());
+        const Folder folder("too_wide");
+        const std::size_t dot = key.find('.');
+        const std::string path = folder.write(
+            "wide.toml", '[' + key.substr(0, dot) + "]\n" + key.substr(dot + 1) + " = 5\n");
+        const Diagnostic error = error_of({path, {}}, input, key + " = 5 (" + path + ":2)");
+        CHECK(error.where.file == path);
+        CHECK(error.where.line == 2);
+    }
+    error_of({{}, {set("perimeters.width", "5")}}, usage, "set perimeters.count");
+}
+
+TEST_CASE(
+    "parts too narrow for two walls of 0.6 mm were filled by a line of 0.8 mm, up to 1.05 mm "
+    "wide") {
+    const auto max_width_mm = [](const std::vector<Setting>& settings) {
+        return with_settings(settings).profile.perimeters.max_width_mm;
+    };
+    CHECK(max_width_mm({}) == 0.8);
+    CHECK(max_width_mm({set("perimeters.width", "0.6")}) == 1.05);
+    CHECK(max_width_mm({set("perimeters.width", "1.2")}) == doctest::Approx(1.2));
+    CHECK(max_width_mm({set("perimeters.width", "0.6"), set("perimeters.max_width", "0.7")}) ==
+          0.7);
+    CHECK(max_width_mm({set("nozzle.diameter", "10"), set("perimeters.width", "20")}) == 20);
+}
+
 TEST_CASE("resolve 5: what to_toml gives is the same profile, for every key") {
     const Folder folder("again");
     std::vector<Setting> changed = all_changed();

@@ -1,9 +1,12 @@
 // What a print without support says of what nothing holds from below.
 
+#include "slicer/air_below.h"
+
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 
 #include "kernel/brep/assembly.h"
 #include "kernel/brep/placement.h"
@@ -92,4 +95,35 @@ TEST_CASE("an overhang of a few lines' width is left to them, and support ends a
     Options held;
     held.profile.support.kind = profile::SupportKind::grid;
     CHECK(said_of(blocks({plate, {"floater", {4, 4, 6}, {9, 9, 9}}}), held).empty());
+}
+
+TEST_CASE("what could not be worked out of overhangs was dropped without a word") {
+    const Options options;
+    const Model model = box(1, 1, 1);
+    const Cutter cutter(model, options.tolerance());
+    const LayerSpan span{0.2, 0.4};
+    const auto disc = [&](double x_mm, double radius_mm) {
+        OutlinedLayer layer{.outline = {FullCircle{{x_mm, 0}, radius_mm, true}}};
+        layer.seen = SkinOutline(layer.outline, options.profile.skin.width_mm);
+        return layer;
+    };
+    const auto said = [&](const std::vector<OutlinedLayer>& layers) {
+        Diagnostics diagnostics;
+        warn_of_air_below(layers, std::vector(layers.size(), span), 0, model, cutter, options,
+                          diagnostics);
+        return diagnostics;
+    };
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    CHECK(said({disc(0, 5), disc(0, 5), disc(0, 5)}).empty());
+    for (const double wrong : {nan, std::numeric_limits<double>::infinity()}) {
+        const Diagnostics found = said({disc(0, 5), disc(0, 5), disc(0, wrong), disc(0, 5)});
+        REQUIRE(found.size() == 1);
+        CHECK(found[0].severity == Severity::warning);
+        CHECK(found[0].message ==
+              "in 2 layers, first here, it could not be worked out what hangs "
+              "over air (support.kind is none)");
+        CHECK(found[0].where.layer == 3);
+        CHECK(found[0].where.z_mm == doctest::Approx(0.3));
+        CHECK(!found[0].where.x_mm);
+    }
 }
