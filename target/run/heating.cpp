@@ -51,6 +51,20 @@ void drop_channels(const config::Printer& printer) {
         if (heater && !heater->pwm.empty()) (void)thermal::KernelPwm::open(heater->pwm);
 }
 
+// All outputs are kernel PWM channels: their keeper has no line, and is written to all the same.
+class NoLines final : public gpio::GpioChip {
+public:
+    std::size_t line_count() const override { return 0; }
+    Status write(gpio::LineMask, gpio::LineMask) override { return Done{}; }
+    Status release() override { return Done{}; }
+};
+
+OpenChip opener_of(std::vector<gpio::LineRequest> requests) {
+    using Opened = Result<std::unique_ptr<gpio::GpioChip>>;
+    if (requests.empty()) return [] { return Opened(std::make_unique<NoLines>()); };
+    return [requests = std::move(requests)] { return gpio::open_gpiod_chip(requests); };
+}
+
 Result<thermal::HeaterPort> open_port(const config::Printer& printer, std::size_t number) {
     const config::Heater& heater = *printer.heaters[number];
     const std::string section = "heater." + std::string(config::heater_names[number]);
@@ -88,10 +102,9 @@ Result<Heating> open_heating(const config::Printer& printer) {
             !added)
             return added.error();
     Heating heating;
-    if (!all.requests.empty()) {
-        const auto open = [&] { return gpio::open_gpiod_chip(all.requests); };
+    if (!all.outputs.empty()) {
         const auto drop = [&] { drop_channels(printer); };
-        auto chip = keep_lines(all.requests.size(), open, silent_ms, drop);
+        auto chip = keep_lines(all.requests.size(), opener_of(all.requests), silent_ms, drop);
         if (!chip) return chip.error();
         heating.chip = std::move(*chip);
     }

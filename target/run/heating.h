@@ -3,8 +3,8 @@
 // Contract
 //  1. open_heating() names the key that is missing, or the file or line that cannot be had (status machine); then
 //     nothing is held.
-//     Lines are held by a process of their own (line_keeper.h), so that a crash leaves no heater on; it must be called
-//     before any thread is started.
+//     Lines are held and PWM channels watched by a process of their own (line_keeper.h), so that a crash leaves no heater
+//     on; it must be called before any thread is started.
 //  2. tend() ticks until `finished`, on its own thread, and counts the ticks; a tick that takes long makes no others hurry.
 //  3. The first guard that fires is told once, through `tripped`, from whichever thread finds it.
 
@@ -23,7 +23,7 @@ namespace lyr::run {
 
 // Parts of it refer to each other by address.
 struct Heating {
-    std::unique_ptr<gpio::GpioChip> chip;  // none: no output is a line
+    std::unique_ptr<gpio::GpioChip> chip;  // none: there is nothing to heat
     std::unique_ptr<thermal::PowerStage> stage;
     std::unique_ptr<thermal::HeatControl> control;
 };

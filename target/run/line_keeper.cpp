@@ -4,6 +4,7 @@
 
 #include <poll.h>
 #include <sys/socket.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,6 +13,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <utility>
 
 namespace lyr::run {
 namespace {
@@ -71,7 +73,12 @@ void serve(int socket, gpio::GpioChip& chip, int silent_ms) {
 
 [[noreturn]] void live(int socket, const OpenChip& open, int silent_ms,
                        const std::function<void()>& drop) {
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) ::signal(signal, SIG_IGN);
+    // Ctrl-Z stops a whole foreground group, and a stopped keeper would leave heaters on: it is of no group that a
+    // terminal knows, and heeds no signal by which it could be ended or stopped in passing.
+    (void)::setsid();
+    sigset_t all;
+    sigfillset(&all);
+    ::sigprocmask(SIG_SETMASK, &all, nullptr);
     Result<std::unique_ptr<gpio::GpioChip>> chip = open();
     const Status opened = chip ? Status(Done{}) : Status(chip.error());
     if (send_whole(socket, reply_of(opened)) && chip) serve(socket, **chip, silent_ms);
@@ -81,14 +88,29 @@ void serve(int socket, gpio::GpioChip& chip, int silent_ms) {
     ::_exit(0);
 }
 
+// A write takes microseconds. A keeper that has not answered by then never may: it was stopped, or hangs.
+constexpr timeval longest_answer{1, 0};
+
+// The end of a process that was killed takes no time unless it hangs in the kernel; then nobody may wait for it.
+bool has_ended(pid_t process) {
+    for (int i = 0; i < 100; ++i) {
+        if (::waitpid(process, nullptr, WNOHANG) != 0) return true;
+        ::usleep(1'000);
+    }
+    return false;
+}
+
 class KeptChip final : public gpio::GpioChip {
 public:
-    KeptChip(std::size_t line_count, int socket, pid_t keeper)
-        : line_count_(line_count), socket_(socket), keeper_(keeper) {}
+    KeptChip(std::size_t line_count, int socket, pid_t keeper, OpenChip open)
+        : line_count_(line_count), socket_(socket), keeper_(keeper), open_(std::move(open)) {
+        for (const int way : {SO_RCVTIMEO, SO_SNDTIMEO})
+            (void)::setsockopt(socket_, SOL_SOCKET, way, &longest_answer, sizeof longest_answer);
+    }
     ~KeptChip() override {
         (void)KeptChip::release();
         ::close(socket_);
-        ::waitpid(keeper_, nullptr, 0);
+        if (keeper_ > 0) ::waitpid(keeper_, nullptr, 0);
     }
     KeptChip(const KeptChip&) = delete;
     KeptChip& operator=(const KeptChip&) = delete;
@@ -107,15 +129,28 @@ public:
 private:
     Status ask(const Request& request) {
         Reply reply;
-        if (!send_whole(socket_, request) || !receive_whole(socket_, reply))
-            return lost("is gone; it switched them off if nobody killed it");
+        if (keeper_ < 0) return lost("is gone");
+        if (!send_whole(socket_, request) || !receive_whole(socket_, reply)) return take_over();
         if (reply.ok) return Done{};
         return Diagnostic{Severity::error, ExitStatus::machine, reply.message.data(), {}};
     }
 
+    // A keeper that was killed has left its lines as they were, one that hangs holds them so.
+    Diagnostic take_over() {
+        ::kill(keeper_, SIGKILL);
+        (void)has_ended(std::exchange(keeper_, -1));
+        Result<std::unique_ptr<gpio::GpioChip>> chip = open_();
+        if (!chip || !(*chip)->write(gpio::all_lines(line_count_), 0))
+            return lost("is gone or hangs, and they may still be on: cut the power now");
+        own_ = std::move(*chip);
+        return lost("is gone or hangs; they were taken from it and switched off");
+    }
+
     std::size_t line_count_;
     int socket_;
-    pid_t keeper_;
+    pid_t keeper_;  // below 0: none any more
+    OpenChip open_;
+    std::unique_ptr<gpio::GpioChip> own_;  // of lines that were taken over; all are inactive
     bool released_ = false;
 };
 
@@ -141,7 +176,7 @@ Result<std::unique_ptr<gpio::GpioChip>> keep_lines(std::size_t line_count, const
     const bool answered = receive_whole(sockets[0], opened);
     if (answered && opened.ok)
         return std::unique_ptr<gpio::GpioChip>(
-            std::make_unique<KeptChip>(line_count, sockets[0], keeper));
+            std::make_unique<KeptChip>(line_count, sockets[0], keeper, open));
     ::close(sockets[0]);
     ::waitpid(keeper, nullptr, 0);
     if (!answered) return lost("ended at its start");

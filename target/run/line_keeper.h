@@ -6,8 +6,9 @@
 //     message each. What fails there comes back as the diagnostic that it is.
 //  2. When the program ends in whatever way, or writes nothing for `silent_ms`, the process makes all lines inactive
 //     and calls `drop`. After a silence every write fails.
-//  3. Signals that a terminal or an init system sends to all processes do not end it: it ends when the program has, or
-//     has released the chip. Without it (killed by name) every write fails.
+//  3. Signals that a terminal or an init system sends to all processes neither end nor stop it: it ends when the program
+//     has, or has released the chip. One that is killed or stopped by name is found out with the next write, within a
+//     second: the lines are opened with `open` once more, here, are made inactive, and every write fails.
 //  4. It must be started before any thread is.
 
 #pragma once

@@ -1,4 +1,4 @@
-// Contract of target/run/line_keeper.h, by number, with a chip whose lines are a file.
+// Contract of target/run/line_keeper.h, by number, with a chip whose lines are a file; and that all heaters are kept so.
 
 #include "target/run/line_keeper.h"
 
@@ -11,6 +11,8 @@
 #include <filesystem>
 #include <fstream>
 #include <thread>
+
+#include "target/run/heating.h"
 
 using namespace lyr;
 using namespace lyr::run;
@@ -28,7 +30,7 @@ public:
         if (levels == 0b11 && changed == 0b10)
             return Diagnostic{Severity::error, ExitStatus::machine, "bus error", {}};
         levels_ = (levels_ & ~changed) | (levels & changed);
-        std::ofstream(path_) << levels_ << '\n';
+        std::ofstream(path_) << levels_ << ' ' << ::getpid() << '\n';
         return Done{};
     }
     Status release() override {
@@ -66,14 +68,22 @@ struct Bench {
         std::ifstream(path) >> levels;
         return levels;
     }
-    bool comes(const std::function<bool()>& what) const {
-        for (int i = 0; i < 500; ++i) {
-            if (what()) return true;
-            std::this_thread::sleep_for(std::chrono::milliseconds(10));
-        }
-        return false;
+    // The one that wrote last.
+    pid_t keeper() const {
+        int levels = -1;
+        pid_t writer = -1;
+        std::ifstream(path) >> levels >> writer;
+        return writer;
     }
 };
+
+bool comes(const std::function<bool()>& what) {
+    for (int i = 0; i < 500; ++i) {
+        if (what()) return true;
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return false;
+}
 
 // What a process does that ends by a signal; true if it came to that.
 bool ends_by(int signal, const std::function<void()>& work) {
@@ -109,7 +119,7 @@ TEST_CASE("line keeper 1: writes are carried out, and what fails comes back") {
         CHECK(bench.levels() == 0);
         CHECK_FALSE((*chip)->write(0b11, 0b10).ok());
     }
-    CHECK(bench.comes([&] { return std::filesystem::exists(bench.dropped); }));
+    CHECK(comes([&] { return std::filesystem::exists(bench.dropped); }));
     const auto refused = keep_lines(
         1,
         []() -> Result<std::unique_ptr<gpio::GpioChip>> {
@@ -131,8 +141,8 @@ TEST_CASE("line keeper 2: however the program ends, the lines go off") {
             // As a crash: nothing is wound up.
             (void)chip->release();
         }));
-        CHECK(bench.comes([&] { return bench.levels() == 0; }));
-        CHECK(bench.comes([&] { return std::filesystem::exists(bench.dropped); }));
+        CHECK(comes([&] { return bench.levels() == 0; }));
+        CHECK(comes([&] { return std::filesystem::exists(bench.dropped); }));
     }
 }
 
@@ -145,7 +155,7 @@ TEST_CASE("line keeper 2: a program that goes silent loses its lines") {
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
     CHECK(bench.levels() == 1);
-    CHECK(bench.comes([&] { return bench.levels() == 0; }));
+    CHECK(comes([&] { return bench.levels() == 0; }));
     CHECK_FALSE((*chip)->write(0b11, 0b01).ok());
     CHECK(bench.levels() == 0);
 }
@@ -161,5 +171,82 @@ TEST_CASE("line keeper 3: signals to the whole group do not end the keeper befor
         if (!(*chip)->write(0b11, 0b10).ok() || bench.levels() != 2) ::_exit(1);
         (void)chip->release();
     }));
-    CHECK(bench.comes([&] { return bench.levels() == 0; }));
+    CHECK(comes([&] { return bench.levels() == 0; }));
+}
+
+TEST_CASE("line keeper 3: Ctrl-Z stopped the keeper with the program, and left the heater on") {
+    for (const int signal : {SIGTSTP, SIGSTOP}) {
+        CAPTURE(signal);
+        const Bench bench;
+        const pid_t worker = ::fork();
+        if (worker == 0) {
+            ::setpgid(0, 0);
+            ::signal(SIGTSTP, SIG_DFL);
+            auto chip = bench.keep(200);
+            if (!chip || !(*chip)->write(0b11, 0b11).ok()) ::_exit(1);
+            ::kill(0, signal);
+            ::_exit(0);
+        }
+        int status = 0;
+        ::waitpid(worker, &status, WUNTRACED);
+        CHECK(WIFSTOPPED(status));
+        CHECK(comes([&] { return bench.levels() == 0; }));
+        ::kill(worker, SIGKILL);
+        ::waitpid(worker, &status, 0);
+    }
+}
+
+TEST_CASE(
+    "line keeper 3: the keeper was killed or stopped by name, and nobody switched the heater off") {
+    for (const int signal : {SIGKILL, SIGSTOP}) {
+        CAPTURE(signal);
+        const Bench bench;
+        auto chip = bench.keep();
+        REQUIRE(chip.ok());
+        REQUIRE((*chip)->write(0b11, 0b11).ok());
+        const pid_t keeper = bench.keeper();
+        REQUIRE(keeper > 0);
+        ::kill(keeper, signal);
+        const auto from = std::chrono::steady_clock::now();
+        const Status failed = (*chip)->write(0b11, 0b01);
+        CHECK(std::chrono::steady_clock::now() - from < std::chrono::seconds(2));
+        REQUIRE_FALSE(failed.ok());
+        CHECK(failed.error().message.find("switched off") != std::string::npos);
+        CHECK(bench.levels() == 0);
+        CHECK_FALSE((*chip)->write(0b11, 0b11).ok());
+        CHECK(bench.levels() == 0);
+    }
+}
+
+TEST_CASE(
+    "heating 1: a crash left a heater on that was a kernel PWM channel, where no output was a "
+    "line") {
+    const std::filesystem::path folder =
+        std::filesystem::temp_directory_path() / "lyr_run_keeper_pwm";
+    std::filesystem::create_directories(folder);
+    for (const char* name : {"period", "duty_cycle", "enable", "sensor"})
+        std::ofstream(folder / name) << 20'000'000 << '\n';
+    std::ofstream(folder / "sensor") << 25 << '\n';
+    config::Printer printer;
+    config::Heater bed = config::default_heater(config::heater_bed);
+    bed.pwm = folder;
+    bed.sensor.kind = config::SensorKind::celsius;
+    bed.sensor.celsius_per_unit = 1;
+    bed.sensor.file = folder / "sensor";
+    printer.heaters[config::heater_bed] = bed;
+    const auto duty_ns = [&] {
+        long duty_ns = -1;
+        std::ifstream(folder / "duty_cycle") >> duty_ns;
+        return duty_ns;
+    };
+    CHECK(ends_by(SIGKILL, [&] {
+        Result<Heating> heating = open_heating(printer);
+        if (!heating) ::_exit(1);
+        heating->control->set_target(config::heater_bed, 60);
+        heating->control->tick(heat_time_s());
+        if (duty_ns() <= 0) ::_exit(1);
+        ::raise(SIGKILL);
+    }));
+    CHECK(comes([&] { return duty_ns() == 0; }));
+    std::filesystem::remove_all(folder);
 }
