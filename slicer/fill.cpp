@@ -257,6 +257,7 @@ LayerFill fill_layer(std::size_t index, const Walls& walls, const PartLayers& la
     } else {
         filler.solid(skins.solid, format::Role::solid_infill);
         filler.sparse(skins.sparse);
+        filler.fill.sparse = std::move(skins.sparse);
     }
     return std::move(filler.fill);
 }

@@ -30,6 +30,7 @@ struct LayerFill {
     bool is_unheld = false;        // solid fill lies on nothing: a bridge inside that no side holds
     double thin_left_out_mm2 = 0;  // of the thin parts, what no strand fits into
     std::size_t unresolved = 0;
+    std::vector<Contour> sparse{};  // where fill is sparse, or none by the profile's wish
 };
 
 // The part's layers from the bed upwards, without a raft: a layer's fill depends on those around it.

@@ -9,6 +9,7 @@
 
 #include "base/text.h"
 #include "slicer/adhesion.h"
+#include "slicer/balance.h"
 #include "slicer/encode.h"
 #include "slicer/fill_report.h"
 #include "slicer/layers.h"
@@ -64,6 +65,7 @@ struct PlannedLayer {
 struct TimedLayer {
     FillNotes notes{};
     LeftOut left_out{};
+    std::optional<Imbalance> imbalance{};
     std::optional<format::EncodedLayer> encoded{};
     LayerEstimate estimate{};
     std::optional<Diagnostic> error{};
@@ -163,6 +165,7 @@ struct Sink {
     const Progress& progress;
     FillReport report{};
     LeftOutReport left_out{};
+    BalanceReport balance{};
     std::optional<Diagnostic> failed{};
 
     bool take(std::size_t i, TimedLayer made, std::size_t count) {
@@ -183,6 +186,10 @@ Location place_of(std::size_t i, const Job& job) {
     return {.layer = static_cast<int>(i + 1), .z_mm = job.in.spans[i].middle_mm()};
 }
 
+std::optional<Imbalance> imbalance(std::size_t i, const Job& job, const LayerFill& fill) {
+    return imbalance_of(job.in.layers[i], fill, job.in.spans[i], job.in.options.profile);
+}
+
 // Each layer of all copies.
 void write_by_layer(const Job& job, Sink& sink, Diagnostics& diagnostics) {
     const auto to = copies_of(job.in.plate, job.in.plate.order);
@@ -194,11 +201,13 @@ void write_by_layer(const Job& job, Sink& sink, Diagnostics& diagnostics) {
             TimedLayer made = encoded(i, job, layer, i % 2 == 0 ? to : fro, i == 0, false);
             made.notes = notes_of(layer.fill);
             made.left_out = left_out_of(job.in.layers[i], layer.fill);
+            made.imbalance = imbalance(i, job, layer.fill);
             return made;
         },
         [&](std::size_t i, TimedLayer made) {
             sink.report.add(made.notes, place_of(i, job), diagnostics);
             sink.left_out.add(made.left_out, i);
+            sink.balance.add(made.imbalance, i);
             return sink.take(i, std::move(made), job.in.layers.size());
         });
 }
@@ -212,6 +221,7 @@ void write_in_sequence(const Job& job, Sink& sink, Diagnostics& diagnostics) {
         [&](std::size_t i, PlannedLayer made) {
             sink.report.add(notes_of(made.fill), place_of(i, job), diagnostics);
             sink.left_out.add(left_out_of(job.in.layers[i], made.fill), i);
+            sink.balance.add(imbalance(i, job, made.fill), i);
             layers.push_back(std::move(made));
             return true;
         });
@@ -247,6 +257,7 @@ Result<Estimate> write_layers(const LayersToWrite& layers, format::Writer& write
             sink.left_out.finish(layers.layers, layers.spans, layers.options, diagnostics);
         !printed)
         return printed.error();
+    sink.balance.finish(layers.spans, diagnostics);
     return sink.timed.estimate();
 }
 

@@ -160,6 +160,18 @@ TEST_CASE("stepc: one damaged number neither hangs nor prints beyond the part") 
     CHECK(refused > 10);
 }
 
+TEST_CASE("stepc: what a line cannot be wide enough for is told with layer, place and amount") {
+    const Folder folder("stepc-balance");
+    folder.copy("parts/foot_structure.step", "p.step");
+    const std::string wide = "stepc p.step --layer-height 0.4 --set perimeters.width=1 ";
+    const std::string told = "less is laid down than the part asks for in ";
+    const Ended narrow = folder.run(wide + "--set perimeters.max_width=0.6");
+    CHECK(narrow.status == 0);
+    CHECK(narrow.err.find(told) != narrow.err.npos);
+    CHECK(narrow.err.find(" % of what is to be solid (at layer ") != narrow.err.npos);
+    CHECK(folder.run("stepc p.step --layer-height 0.4").err.find(told) == std::string::npos);
+}
+
 TEST_CASE("stepc: errors are shown before warnings, and as many as can be read") {
     lyr::Diagnostics found(50, {lyr::Severity::warning, lyr::ExitStatus::geometry, "small", {}});
     found[40] = {lyr::Severity::error, lyr::ExitStatus::geometry, "grave", {}};
