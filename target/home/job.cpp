@@ -120,19 +120,20 @@ Status home_before_print(Mover& mover, const config::Printer& printer,
                          const std::optional<run::Resumption>& resumption) {
     const AxisSet axes = homed_before_print(printer, resumption.has_value());
     config::Printer machine = resumption ? run::lifted(printer, *resumption) : printer;
-    const bool finds_z = axes[config::axis_z];
     motion::Point start = start_of(machine);
-    if (resumption && !finds_z) {
-        const motion::Point found{start.x, start.y, resumption->stopped_z_mm};
+    // The print begins with this lift.
+    const auto bed = moves::bed_of(printer);
+    const double lift_mm = bed ? bed->lift_mm(start) : 0;
+    start.z += lift_mm;
+    if (resumption && !axes[config::axis_z]) {
+        const motion::Point found{start.x, start.y, resumption->stopped_z_mm + lift_mm};
         if (Status lifted = travel(mover, printer, found, start); !lifted) return lifted;
+        machine.start_mm[config::axis_z] = start.z;
         machine.homing.lift_mm = std::max(
             0.0, std::min(machine.homing.lift_mm, printer.axes[config::axis_z].max_mm - start.z));
     }
     const Result<Homed> homed = home(mover, machine, axes);
     if (!homed) return homed.error();
-    // How much higher the bed was where the print was cut off is not known.
-    const auto bed = moves::bed_of(printer);
-    if (bed && (finds_z || !resumption)) start.z += bed->lift_mm(start);
     return travel(mover, printer, homed->head, start);
 }
 

@@ -5,6 +5,7 @@
 
 #include "base/constants.h"
 #include "base/text.h"
+#include "target/moves/machine.h"
 #include "target/run/inspect.h"
 
 namespace lyr::run {
@@ -14,6 +15,14 @@ constexpr double nm_per_mm = 1e6;
 
 Diagnostic refused(std::string message, const std::string& file) {
     return {Severity::error, ExitStatus::input, std::move(message), {.file = file}};
+}
+
+// As high as the head was there, said of a head over start_mm.
+double z_over_start_mm(const config::Printer& printer, const motion::Point& head) {
+    const auto bed = moves::bed_of(printer);
+    if (!bed) return head.z;
+    const motion::Point start{printer.start_mm[0], printer.start_mm[1], head.z};
+    return head.z + bed->lift_mm(head) - bed->lift_mm(start);
 }
 
 }  // namespace
@@ -39,7 +48,9 @@ Result<Resumption> find_resumption(const config::Printer& printer, const std::st
     if (!reader) return reader.error();
     if (const auto start = reader->next(); !start) return start.error();
     resumption.state = reader->layer().state;
-    resumption.stopped_z_mm = resumption.state.z_mm;
+    const format::LayerState& layer = resumption.state;
+    resumption.stopped_z_mm =
+        z_over_start_mm(printer, {layer.start_x_mm, layer.start_y_mm, layer.z_mm});
     if (const auto parked_nm = resumption.entry.parked_nm)
         resumption.stopped_z_mm = static_cast<double>(*parked_nm) / nm_per_mm;
     return resumption;

@@ -6,6 +6,8 @@
 //     for: not by name, but by all its bytes.
 //  3. x and y of the head are those of start_mm: it was put there, or homed. Its height is that of the layer, or where the
 //     journal says that it was parked; it begins lifted by pause.lift_mm.
+//  4. Over a crooked bed, that height counts from the bed's at start_mm. Where in the layer the head was is not known: it is
+//     taken to be where the layer begins.
 
 #pragma once
 
@@ -23,7 +25,7 @@ std::string journal_path(const config::Printer& printer, const std::string& file
 struct Resumption {
     JournalEntry entry;
     std::uint32_t first_layer = 0;  // from 0
-    double stopped_z_mm = 0;        // where the head is found
+    double stopped_z_mm = 0;        // where the head is found, over start_mm
     format::LayerState state;       // of that layer
 };
 

@@ -19,6 +19,7 @@ config::Printer plain_machine_at(const config::Printer& printer, const motion::P
     machine.shapers = {};
     machine.pressure_advance_s = 0;
     machine.backlash_mm = {};
+    machine.mesh.heights_mm.clear();  // head_at() has the bed's height in it
     return machine;
 }
 

@@ -5,8 +5,9 @@
 //     given.
 //  2. The motors make as many steps there as back: after legs that end where they began, no motor has moved, whatever
 //     its steps are and wherever between two of them the head stood.
-//  3. Input shaping, pressure advance and play are left out: nothing is printed on the way.
-//  4. head_at() is where the head is when its motors have made so many steps from the printer's start.
+//  3. Input shaping, pressure advance, play and the bed's heights are left out: nothing is printed on the way.
+//  4. head_at() is where the head is when its motors have made so many steps from the printer's start. Its z counts from
+//     the bed's height there: it is that of the path and how much higher than at the start the bed is below the head.
 
 #pragma once
 

@@ -32,6 +32,29 @@ TEST_CASE("homing before a print 4: one that resumes lifts first, and takes its 
     }
 }
 
+TEST_CASE(
+    "homing before a print 4: one that resumes over a crooked bed begins as high as it says") {
+    for (const Kinematics kind : {Kinematics::cartesian, Kinematics::corexy, Kinematics::delta}) {
+        CAPTURE(static_cast<int>(kind));
+        config::Printer printer = machine_of(kind);
+        const bool is_delta = kind == Kinematics::delta;
+        constexpr double lift_mm = 0.5, z_mm = 10;
+        printer.mesh.area_mm = {-100, -100, 100, 100};
+        printer.mesh.heights_mm = {{lift_mm, lift_mm}, {lift_mm, lift_mm}};
+        printer.start_mm = is_delta ? std::array{0.0, 0.0, 30.0} : std::array{20.0, 20.0, 0.2};
+        printer.simulated.head_mm = is_delta ? std::array{40.0, 30.0, z_mm + lift_mm}
+                                             : std::array{120.0, 100.0, z_mm + lift_mm};
+        printer.endstops[config::axis_z].at_high_end = is_delta;
+        run::Resumption resumption;
+        resumption.stopped_z_mm = z_mm;
+        Scene scene(printer);
+        const Status homed = home::home_before_print(scene.mover, printer, resumption);
+        REQUIRE_MESSAGE(homed.ok(), homed.error().message);
+        const std::array<double, 3> start = run::lifted(printer, resumption).start_mm;
+        CHECK(scene.off_steps({start[0], start[1], start[2] + lift_mm}) <= 1.01);
+    }
+}
+
 TEST_CASE("homing before a print 4: without endstops of x and y none resumes with homing") {
     config::Printer printer = machine_of(Kinematics::cartesian);
     CHECK(home::homed_before_print(printer, false) == home::AxisSet(0b111));

@@ -334,9 +334,14 @@ TEST_CASE(
     CHECK(passed->notes.back().message.find("nobody") != std::string::npos);
 }
 
-TEST_CASE("trip 4: where the head is follows from its motors, on every kind of machine") {
+TEST_CASE("trip 3, 4: where the head is follows from its motors, whatever machine and bed") {
     config::Printer printer = config::generic_printer();
     printer.start_mm = {3, -4, 12};
+    printer.mesh.area_mm = {-100, -100, 100, 100};
+    SUBCASE("a flat bed") {}
+    SUBCASE("a crooked bed") {
+        printer.mesh.heights_mm = {{-1, 1}, {0, 2}};
+    }
     for (const auto kind :
          {config::Kinematics::cartesian, config::Kinematics::corexy, config::Kinematics::delta}) {
         printer.kinematics = kind;

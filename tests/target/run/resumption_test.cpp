@@ -94,6 +94,30 @@ TEST_CASE(
     std::filesystem::remove(file + ".journal");
 }
 
+TEST_CASE(
+    "resumption 4: a crooked bed's difference between the layer's begin and start_mm counts") {
+    config::Printer printer = config::generic_printer();
+    const std::string file = write_print("crooked", {draw_square, draw_arcs, draw_square});
+    write_entry(file, 2);
+    const Result<Resumption> flat = find_resumption(printer, file);
+    REQUIRE(flat.ok());
+    // A plane: of the same slope everywhere, and as high at the start as the mesh's other corner is far.
+    constexpr double slope = 0.01, width_mm = 200;
+    printer.mesh.area_mm = {0, 0, width_mm, width_mm};
+    printer.mesh.heights_mm = {{0, slope * width_mm}, {0, slope * width_mm}};
+    printer.start_mm = {150, 20, 0.2};
+    const Result<Resumption> crooked = find_resumption(printer, file);
+    REQUIRE(crooked.ok());
+    CHECK(crooked->stopped_z_mm ==
+          doctest::Approx(flat->stopped_z_mm + slope * (flat->state.start_x_mm - 150)));
+    // Where it was parked its height is known, and counts from start_mm already.
+    write_entry(file, 2, 6'500'000);
+    const Result<Resumption> parked = find_resumption(printer, file);
+    REQUIRE(parked.ok());
+    CHECK(parked->stopped_z_mm == doctest::Approx(6.5));
+    std::filesystem::remove(file + ".journal");
+}
+
 TEST_CASE("resumption 2: no journal, or another file, is refused") {
     const config::Printer printer = config::generic_printer();
     const std::string file = write_print("resume_other", {draw_square, draw_arcs});
