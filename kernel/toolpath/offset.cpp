@@ -21,6 +21,10 @@ constexpr double source_share = 0.25;
 // In allowed_mm: what is nearer to another part of the boundary is for the region operations.
 constexpr double clear_share = 0.25;
 
+// Of the distance, how far a mitre may end from the boundary whose corner it comes from: sides that bend, and corners that
+// are a little rounded, lead past it.
+constexpr double corner_share = 0.2;
+
 std::optional<OffsetFault> fault_of(const RegionResult& result, const BoundedRegion& region,
                                     const OffsetRequest& request) {
     if (result.unresolved > 0) return OffsetFault{OffsetFault::Kind::region};
@@ -45,6 +49,11 @@ std::optional<OffsetResult> trimmed(const BoundedRegion& region, const OffsetReq
 }
 
 }  // namespace
+
+bool CornersOf::contains(const Point2& corner, const Vector2& outwards) const {
+    return boundary.is_near(corner + inside_mm / outwards.squaredNorm() * outwards,
+                            corner_share * inside_mm);
+}
 
 OffsetResult settled(const RegionResult& first, const BoundedRegion& region,
                      const OffsetRequest& request) {

@@ -8,7 +8,8 @@
 //  1. Outwards (distance > 0): every point within the distance of the region; inwards: every point of it that is
 //     farther than that from its boundary. The result's boundary is nowhere farther than `allowed_mm` from there.
 //  2. Lines stay lines, arcs stay arcs about the same centre, and a full circle that nothing cuts is a full circle about
-//     just that centre. Corners that the boundary goes round are arcs about the corner, or mitred.
+//     just that centre. Corners that the boundary goes round are arcs about the corner, or mitred: all of them, or those
+//     that come from corners of a given boundary.
 //  3. Holes and islands merge and vanish, regions split and are joined. What no disc of diameter `allowed_mm` fits into
 //     is left out and counted.
 //  4. Contours are closed, have the material on the left and are sorted, as those of kernel/region.
@@ -30,12 +31,23 @@ namespace lyr {
 
 enum class Corner { round, mitre };
 
+// Corners of a boundary, seen from a region that lies within it: those whose mitres at that distance end on the boundary.
+// Where sides meet that are not beside each other there, as at the mouth of a passage, the mitre's point is in mid-air.
+struct CornersOf {
+    const Boundary& boundary;
+    double inside_mm;
+
+    // `outwards`: the mean of the unit normals of a corner's two sides.
+    bool contains(const Point2& corner, const Vector2& outwards) const;
+};
+
 struct OffsetRequest {
     double distance_mm = 0;  // positive: outwards
     double allowed_mm = 0;
     Corner corner = Corner::round;  // where the boundary goes round
     // A mitred corner is at most this many times the distance from the region's corner; a sharper one is round.
     double mitre_limit = 2;
+    const CornersOf* mitred = nullptr;  // if given, no other corners are mitred
 };
 
 struct OffsetFault {

@@ -127,6 +127,8 @@ private:
     }
     void leave_out(std::size_t i);
     std::optional<std::size_t> cut(std::vector<Rest>& rests) const;
+    Vector2 middle(std::size_t i) const;
+    bool may_be_mitred(std::size_t i) const;
     Point2 mitre_at(std::size_t i) const;
     void line_to(const Point2& point);
     void segment_to(const Segment& segment);
@@ -158,15 +160,22 @@ CurveBuilder::Joint CurveBuilder::joint_at(std::size_t i) const {
     const double turn = turn_rad(i);
     if (turn * distance_mm_ < 0) return Joint::crossing;
     const bool mitred = request_.corner == Corner::mitre && std::abs(turn) < std::numbers::pi &&
-                        request_.mitre_limit * std::cos(turn / 2) >= 1;
+                        request_.mitre_limit * std::cos(turn / 2) >= 1 && may_be_mitred(i);
     return mitred ? Joint::mitre : Joint::round;
 }
 
+// From a corner to the middle between its parallels: |distance| cos(turn / 2).
+Vector2 CurveBuilder::middle(std::size_t i) const {
+    return (sides_[i].parallel_end + after(i).parallel_start) / 2 - sides_[i].end;
+}
+
+bool CurveBuilder::may_be_mitred(std::size_t i) const {
+    return !request_.mitred ||
+           request_.mitred->contains(sides_[i].end, middle(i) / std::abs(distance_mm_));
+}
+
 Point2 CurveBuilder::mitre_at(std::size_t i) const {
-    const Point2& corner = sides_[i].end;
-    const Vector2 middle = (sides_[i].parallel_end + after(i).parallel_start) / 2 -
-                           corner;  // |distance| cos(turn / 2)
-    return corner + distance_mm_ * distance_mm_ / middle.squaredNorm() * middle;
+    return sides_[i].end + distance_mm_ * distance_mm_ / middle(i).squaredNorm() * middle(i);
 }
 
 void CurveBuilder::line_to(const Point2& point) {

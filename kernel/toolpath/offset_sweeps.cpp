@@ -95,6 +95,7 @@ void Sweeps::add_mitre(const BoundaryPiece& before, const BoundaryPiece& after) 
     if (!goes_round || (one - other).norm() <= resolution_mm || request_.mitre_limit * cosine < 1) {
         return;
     }
+    if (request_.mitred && !request_.mitred->contains(corner, middle / distance_mm_)) return;
     const Point2 tip = corner + middle / (cosine * cosine);
     covered_.push_back(
         counter_clockwise({corner, {{corner + one}, {tip}, {corner + other}, {corner}}}));

@@ -15,6 +15,7 @@
 #include "kernel/toolpath/fitted_walls.h"
 #include "kernel/toolpath/infill.h"
 #include "kernel/toolpath/islands.h"
+#include "kernel/toolpath/lost_webs.h"
 #include "kernel/toolpath/strip_area.h"
 
 namespace lyr {
@@ -54,9 +55,8 @@ public:
         if (!request_.thin_walls && request_.count > 0 && !base_.empty())
             walls_.left_out_mm2 = walls_.too_thin_mm2 = std::max(0.0, unreached_mm2(base_, 0));
         for (std::uint32_t depth = 0; depth < request_.count && !base_.empty(); ++depth) {
-            leaves_gap_ = false;
-            if (!is_whole(depth)) separate_narrow(depth);
-            if (leaves_gap_ && depth > 0) fit(depth - 1);
+            const bool leaves_gap = !is_whole(depth) && separate_narrow(depth);
+            if (leaves_gap && depth > 0) fit(depth - 1);
             // Further in there is nothing either.
             if (inner(depth).empty()) return std::move(walls_);
             add(inner(depth), depth);
@@ -106,9 +106,21 @@ private:
                (reaches || is_reached(outer(depth), depth));
     }
 
+    // Where a neck or a web is too narrow for a wall, there is a part more or a hole less.
+    static bool has_same_parts(Region a, Region b) {
+        const auto is_outer = [](const Contour& contour) { return lyr::area_mm2(contour) > 0; };
+        return a.size() == b.size() && std::count_if(a.begin(), a.end(), is_outer) ==
+                                           std::count_if(b.begin(), b.end(), is_outer);
+    }
+
+    // Whether a wall is all around what the walls before leave. Gaps between walls may be cut in two.
+    static bool goes_around(Region outside, Region wall, std::uint32_t depth) {
+        return depth == 0 ? has_same_parts(outside, wall) : wall.size() >= outside.size();
+    }
+
     // Whether the boundaries at two distances are what an even change leads to from one to the other.
     static bool is_even(Region outer, Region inner, double distance_mm) {
-        if (outer.size() != inner.size()) return false;
+        if (!has_same_parts(outer, inner)) return false;
         const double between = area_mm2(outer) - area_mm2(inner);
         const double expected = distance_mm * (length_mm(outer) + length_mm(inner)) / 2;
         return std::abs(between - expected) <= unseen_mm * unseen_mm;
@@ -160,26 +172,41 @@ private:
 
     // What has no wall at all may be small, and still is a part that would be missed.
     bool is_reached(Region outside, std::uint32_t depth) {
-        return inner(depth).size() >= outside.size() &&
+        return goes_around(outside, inner(depth), depth) &&
                unreached_mm2(outside, depth) <= unseen_mm * unseen_mm;
     }
 
-    std::vector<Contour> offset_by(const BoundedRegion& region, double distance_mm, Corner corner) {
+    std::vector<Contour> offset_by(const BoundedRegion& region, double distance_mm, Corner corner,
+                                   const CornersOf* mitred = nullptr) {
         if (region.contours.empty()) return {};
         OffsetResult result = offset(region, {.distance_mm = distance_mm,
                                               .allowed_mm = request_.allowed_mm,
                                               .corner = corner,
-                                              .mitre_limit = mitre_limit});
+                                              .mitre_limit = mitre_limit,
+                                              .mitred = mitred});
         walls_.second_method += result.second_method;
         walls_.unresolved += result.unresolved.has_value();
         return std::move(result.contours);
     }
 
+    const BoundedRegion& bounded() {
+        if (!bounded_) bounded_.emplace(base_);
+        return *bounded_;
+    }
+
     // By a distance from the outline.
     std::vector<Contour> shrunk(double distance_mm) {
         if (distance_mm == base_mm_) return base_;
-        if (!bounded_) bounded_.emplace(base_);
-        return offset_by(*bounded_, base_mm_ - distance_mm, request_.corner);
+        return offset_by(bounded(), base_mm_ - distance_mm, request_.corner);
+    }
+
+    // What lies that deep made larger. Corners of the outermost wall are mitred, but not where it points into what is narrow;
+    // between walls, mitres leave fewer and shorter gaps.
+    std::vector<Contour> grown(Region inner, std::uint32_t depth, double inside_mm,
+                               double distance_mm) {
+        const CornersOf corners{bounded().boundary, inside_mm - base_mm_};
+        return offset_by(BoundedRegion(inner), distance_mm, Corner::mitre,
+                         depth == 0 ? &corners : nullptr);
     }
 
     // Walls from here on are offsets of this one.
@@ -269,57 +296,66 @@ private:
                           .greatest_mm = most_apart_mm()});
     }
 
-    // Takes off a wall where its opposite sides are too near each other, and lists what it does not cover.
-    void separate_narrow(std::uint32_t depth) {
+    // Takes off a wall where its opposite sides are too near each other, and lists what it does not cover. Whether something
+    // is left out that is too narrow for a line.
+    bool separate_narrow(std::uint32_t depth) {
         const std::vector<Contour> outside = outer(depth);
-        std::vector<Contour> wall = inner(depth), wide = wide_parts(wall, middle_mm(depth));
-        const bool is_cut =
-            wide.size() < wall.size() || area_mm2(wall) - area_mm2(wide) > unseen_mm * unseen_mm;
-        if (!is_cut && is_reached(outside, depth)) return;
+        std::vector<Contour> wall = inner(depth), wide = wide_parts(wall, depth);
+        const bool is_cut = wide.size() < wall.size() || !goes_around(outside, wall, depth) ||
+                            area_mm2(wall) - area_mm2(wide) > unseen_mm * unseen_mm;
+        if (!is_cut && is_reached(outside, depth)) return false;
         if (is_cut) wall = std::move(wide);
         const std::vector<Contour> covered =
-            offset_by(BoundedRegion(wall), outwards_mm(depth), Corner::mitre);
+            grown(wall, depth, middle_mm(depth), outwards_mm(depth));
         // Else only edges have vanished.
-        if (!is_cut && covered.size() >= outside.size() &&
+        if (!is_cut && goes_around(outside, covered, depth) &&
             area_mm2(outside) - area_mm2(covered) <= unseen_mm * unseen_mm)
-            return;
-        add_narrow(outside, covered, depth);
+            return false;
+        const bool leaves_gap = add_narrow(outside, covered, depth);
         if (!wall.empty()) add_joint(outside, wall, depth);
         set_base(std::move(wall), depth);
+        return leaves_gap;
     }
 
     // The parts of a wall whose opposite sides are far enough from each other.
-    std::vector<Contour> wide_parts(Region wall, double middle_mm) {
+    std::vector<Contour> wide_parts(Region wall, std::uint32_t depth) {
         const double half_mm = least_space_share * spacing_mm_ / 2;
-        const std::vector<Contour> kernel = shrunk(middle_mm + half_mm);
         const double margin_mm = cut_margin_share * request_.width_mm;
+        const double inside_mm = middle_mm(depth) + half_mm;
         const std::vector<Contour> wide =
-            offset_by(BoundedRegion(kernel), half_mm + margin_mm, Corner::mitre);
+            grown(shrunk(inside_mm), depth, inside_mm, half_mm + margin_mm);
         if (wide.empty()) return {};
         return operated(wall, wide, Operation::intersect);
     }
 
-    // What of `outer` a wall and its flanks do not cover, if a line fits into it.
-    void add_narrow(Region outer, Region covered, std::uint32_t depth) {
+    // What of `outer` a wall and its flanks do not cover, if a line fits into it. Whether anything else is more than is
+    // left alone.
+    bool add_narrow(Region outer, Region covered, std::uint32_t depth) {
         const std::vector<Contour> rest = covered.empty()
                                               ? std::vector<Contour>(outer.begin(), outer.end())
                                               : operated(outer, covered, Operation::subtract);
         const double least_mm = depth == 0 ? request_.min_width_mm : request_.min_gap_mm;
         // What is as wide as that but for what is allowed would vanish.
         const double half_mm = std::max(least_mm / 4, least_mm / 2 - request_.allowed_mm);
-        const std::vector<Contour> fit = offset_by(BoundedRegion(rest), -half_mm, Corner::round);
-        const std::vector<Contour> opened = offset_by(BoundedRegion(fit), half_mm, Corner::mitre);
+        const BoundedRegion bounded_rest(rest);
+        const std::vector<Contour> fit = offset_by(bounded_rest, -half_mm, Corner::round);
+        const CornersOf corners{bounded_rest.boundary, half_mm};
+        const std::vector<Contour> opened =
+            offset_by(BoundedRegion(fit), half_mm, Corner::mitre, depth == 0 ? &corners : nullptr);
         const std::vector<Contour> narrow =
             opened.empty() ? opened : operated(opened, rest, Operation::intersect);
         const double left_out_mm2 = area_mm2(rest) - area_mm2(narrow);
         walls_.left_out_mm2 += left_out_mm2;
-        leaves_gap_ = left_out_mm2 > unseen_mm * unseen_mm;
-        if (depth == 0)
-            walls_.too_thin_mm2 += left_out_mm2 > unseen_mm * unseen_mm
-                                       ? beyond_mm2(rest, covered) - beyond_mm2(narrow, covered)
-                                       : left_out_mm2;
+        const bool is_seen = left_out_mm2 > unseen_mm * unseen_mm;
+        if (depth == 0) {
+            walls_.too_thin_mm2 =
+                is_seen ? beyond_mm2(rest, covered) - beyond_mm2(narrow, covered) : left_out_mm2;
+            walls_.lost_web = lost_web(rest, narrow, bounded().boundary,
+                                       {request_.min_width_mm, request_.allowed_mm});
+        }
         auto& list = depth == 0 ? walls_.thin : walls_.gaps;
         list.insert(list.end(), narrow.begin(), narrow.end());
+        return is_seen;
     }
 
     // Without the notches beside corners of walls that point into it: strands that end there cover these.
@@ -348,7 +384,6 @@ private:
     double base_mm_ = 0;
     std::optional<BoundedRegion> bounded_;
     double spacing_mm_;
-    bool leaves_gap_ = false;   // beside the wall that is made: something too narrow for a line
     std::uint32_t fitted_ = 0;  // the walls outside of this depth need not be fitted again
     std::vector<std::optional<std::vector<Contour>>> inner_;  // by depth
     Walls walls_;
