@@ -20,9 +20,6 @@ constexpr double least_missing_squares = 5, missing_share = 0.005, missing_along
 // laid down on purpose than less.
 constexpr double least_surplus_squares = 5, surplus_share = 0.1;
 
-// The tip of a sharp corner, which no strand reaches, is smaller.
-constexpr double least_bare_squares = 0.75;
-
 // So many runs of layers are told one by one.
 constexpr std::size_t most_told = 5;
 
@@ -63,26 +60,17 @@ double laid_mm2(const OutlinedLayer& layer, const LayerFill& fill, const LayerSp
     return sum.laid_mm2;
 }
 
-// `open` is not to be solid.
-MaterialMap map_of(const OutlinedLayer& layer, const LayerFill& fill, Region open,
-                   const LayerSpan& span, const profile::Profile& profile) {
+MaterialMap map_of(const OutlinedLayer& layer, const LayerFill& fill, const LayerSpan& span,
+                   const profile::Profile& profile) {
     region::Box2 box;
     for (const Contour& contour : layer.outline) box.extend(region::box_of(contour));
     MaterialMap map(box, profile.skin.width_mm);
     map.ask_for(layer.outline, 1);
-    map.ask_for(open, -1);
+    map.ask_for(fill.sparse, -1);
     for_laid(layer, fill, span, profile, [&](const auto& way, double lapped_mm, double flow) {
         map.lay(way, lapped_mm, flow);
     });
     return map;
-}
-
-std::size_t outermost(const Walls& walls) {
-    return static_cast<std::size_t>(std::count(walls.depths.begin(), walls.depths.end(), 0u));
-}
-
-bool is_missing(const Imbalance& imbalance) {
-    return imbalance.kind != Kind::too_much;
 }
 
 Diagnostic warning(const std::string& message, const Location& where) {
@@ -90,9 +78,6 @@ Diagnostic warning(const std::string& message, const Location& where) {
 }
 
 std::string text_of(const Imbalance& worst, const std::string& layers) {
-    if (worst.kind == Kind::bare)
-        return "a spot that is to be solid has nothing in it in " + layers +
-               formatted("; largest here, %.3g mm2", worst.off_mm2);
     const char* what = worst.kind == Kind::too_little ? "less" : "more";
     return what + (" is laid down than the part asks for in " + layers) +
            formatted("; most here, by %.3g mm2 or %.2g %% of what is to be solid", worst.off_mm2,
@@ -108,26 +93,20 @@ std::optional<Imbalance> imbalance_of(const OutlinedLayer& layer, const LayerFil
     const double told_mm2 = layer.walls.too_thin_mm2 + fill.thin_left_out_mm2;
     const double solid_mm2 = layer.printed.area_mm2 - area_mm2(fill.sparse) - told_mm2;
     const double missing_mm2 = solid_mm2 - laid_mm2(layer, fill, span, profile);
-    const auto map = [&](Region open) { return map_of(layer, fill, open, span, profile); };
+    const auto map = [&] { return map_of(layer, fill, span, profile); };
     if (-missing_mm2 > std::max(least_surplus_squares * square_mm2, surplus_share * solid_mm2))
-        return Imbalance{Kind::too_much, -missing_mm2, solid_mm2, map(fill.sparse).most_surplus()};
-    if (!profile.perimeters.gap_fill) return std::nullopt;
+        return Imbalance{Kind::too_much, -missing_mm2, solid_mm2, map().most_surplus()};
     const double most_mm2 =
         least_missing_squares * square_mm2 +
         std::min(missing_share * solid_mm2, missing_along_outline_mm * layer.printed.length_mm);
-    if (missing_mm2 > most_mm2)
-        return Imbalance{Kind::too_little, missing_mm2, solid_mm2, map(fill.sparse).most_missing()};
-    if (profile.perimeters.count == 0 || outermost(layer.walls) == layer.outline.size())
-        return std::nullopt;
-    const MaterialMap::Spot bare = map(layer.walls.inside).largest_bare();
-    if (!(bare.area_mm2 > least_bare_squares * square_mm2 + told_mm2)) return std::nullopt;
-    return Imbalance{Kind::bare, bare.area_mm2, solid_mm2, bare.at};
+    if (!profile.perimeters.gap_fill || !(missing_mm2 > most_mm2)) return std::nullopt;
+    return Imbalance{Kind::too_little, missing_mm2, solid_mm2, map().most_missing()};
 }
 
 void BalanceReport::add(const std::optional<Imbalance>& found, std::size_t index) {
     if (!found) return;
-    const bool goes_on = !runs_.empty() && runs_.back().last + 1 == index &&
-                         is_missing(runs_.back().worst) == is_missing(*found);
+    const bool goes_on =
+        !runs_.empty() && runs_.back().last + 1 == index && runs_.back().worst.kind == found->kind;
     if (!goes_on) runs_.push_back({.first = index});
     Run& run = runs_.back();
     run.last = index;

@@ -6,14 +6,11 @@
 //     times the flow that their fill gave them. Support, and the flow of the filament and of bridges, are no part of it.
 //  2. A square is as wide as a wall's line. Too little is what lacks more than 5 squares and 0.5 % of what is to be solid,
 //     or 6 um along the outline if that is less; too much is more than 5 squares and a tenth of what is to be solid.
-//  3. Bare is a spot of more than 3/4 of a square beside walls, not in what these leave for fill, that no strand meets
-//     (material_map.h). It is looked for where the section has not as many contours as outermost walls: what is lost
-//     between two holes is so small that the sums do not tell.
-//  4. Without gap fill nothing is too little or bare: so it is wished.
-//  5. Each run of layers that lack something, or have too much, is one warning, with the layer and the place where it is
+//  3. Without gap fill nothing is too little: so it is wished.
+//  4. Each run of layers that lack something, or have too much, is one warning, with the layer and the place where it is
 //     worst; after a few runs the others are counted.
 //
-// Cost: the sums. The place is only looked for where there is something to be said, or may be (3).
+// Cost: the sums. The place is only looked for where there is something to be said.
 
 #pragma once
 
@@ -26,7 +23,7 @@
 namespace lyr::slicer {
 
 struct Imbalance {
-    enum class Kind : std::uint8_t { too_little, too_much, bare };
+    enum class Kind : std::uint8_t { too_little, too_much };
     Kind kind = Kind::too_little;
     double off_mm2 = 0, solid_mm2 = 0;  // what is to be solid
     Point2 at = Point2::Zero();
