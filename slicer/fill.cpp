@@ -119,7 +119,10 @@ public:
                                               .allowed_mm = allowed_mm_},
                                              joints);
             fill.unresolved += lines.unresolved;
-            if (role == format::Role::thin_wall) fill.thin_left_out_mm2 += lines.left_out_mm2;
+            if (role == format::Role::thin_wall) {
+                fill.thin_left_out_mm2 += lines.left_out_mm2;
+                if (!fill.thin_broken) fill.thin_broken = lines.broken;
+            }
             const double flow = flow_to_ends(lines.strands, area_mm2(part) - lines.left_out_mm2);
             for (Strand& strand : lines.strands) {
                 strand.width_mm += 2 * flank_mm;

@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <optional>
 #include <span>
 #include <variant>
 
@@ -29,6 +30,7 @@ struct LayerFill {
     bool asks_sparse = false;      // there is room for sparse fill, and the profile asks for it
     bool is_unheld = false;        // solid fill lies on nothing: a bridge inside that no side holds
     double thin_left_out_mm2 = 0;  // of the thin parts, what no strand fits into
+    std::optional<Point2> thin_broken{};  // where two of their strands are not joined for that
     std::size_t unresolved = 0;
 };
 

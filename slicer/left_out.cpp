@@ -50,19 +50,20 @@ std::optional<Point2> thin_place(Region outline, double width_mm, double allowed
 
 LeftOut left_out_of(const OutlinedLayer& layer, const LayerFill& fill) {
     LeftOut result{.thin_mm2 = layer.walls.too_thin_mm2 + fill.thin_left_out_mm2,
+                   .place = layer.walls.lost_web ? layer.walls.lost_web : fill.thin_broken,
                    .is_all = layer.walls.strands.empty() && fill.pieces.empty()};
     for (const Contour& contour : layer.outline) {
         const double area = area_mm2(contour);
         if (area <= 0 || area > tip_mm * tip_mm || !is_empty_within(contour, layer, fill)) continue;
         result.thin_mm2 = std::max(result.thin_mm2, area);
-        if (!result.island) result.island = region::box_of(contour).center();
+        if (!result.place) result.place = region::box_of(contour).center();
     }
     return result;
 }
 
 void LeftOutReport::add(const LeftOut& layer, std::size_t index) {
     prints_ |= !layer.is_all;
-    if (layer.thin_mm2 <= tip_mm * tip_mm && !layer.island) return;
+    if (layer.thin_mm2 <= tip_mm * tip_mm && !layer.place) return;
     if (layers_++ == 0) first_ = index;
     last_ = index;
     if (layers_ > 1 && layer.thin_mm2 <= most_left_.thin_mm2) return;
@@ -82,9 +83,9 @@ Status LeftOutReport::finish(std::span<const OutlinedLayer> layers,
             ? "parts thinner than " + shortest(least_mm) + " mm (perimeters.min_width)"
             : "parts that no wall goes around (perimeters.thin_walls is off)";
     Location where{.layer = static_cast<int>(most_ + 1), .z_mm = spans[most_].middle_mm()};
-    const auto place = most_left_.island ? most_left_.island
-                                         : thin_place(layers[most_].outline, dot_share * least_mm,
-                                                      options.tolerance().unite_mm());
+    const auto place = most_left_.place ? most_left_.place
+                                        : thin_place(layers[most_].outline, dot_share * least_mm,
+                                                     options.tolerance().unite_mm());
     if (place) {
         where.x_mm = place->x();
         where.y_mm = place->y();

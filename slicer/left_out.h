@@ -1,8 +1,8 @@
 // What of a print is so thin that no line is printed for it.
 //
 // Contract
-//  1. Of a layer, what is left out is counted where it is more than the tip of a corner, or an island of its own, however
-//     small.
+//  1. Of a layer, what is left out is counted where it is more than the tip of a corner, or, however small, an island of
+//     its own or a web without which parts of the layer come apart.
 //  2. There is one warning for the print: in how many layers, over what heights, and where the most of it is.
 
 #pragma once
@@ -16,8 +16,9 @@ namespace lyr::slicer {
 
 struct LeftOut {
     double thin_mm2 = 0;
-    std::optional<Point2> island{};  // the first one with nothing in it
-    bool is_all = false;             // nothing is printed in the layer
+    std::optional<Point2>
+        place{};  // of the first web that is not whole, or else the first island with nothing in it
+    bool is_all = false;  // nothing is printed in the layer
 };
 LeftOut left_out_of(const OutlinedLayer& layer, const LayerFill& fill);
 

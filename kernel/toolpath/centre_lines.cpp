@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "kernel/region/verify.h"
@@ -191,7 +192,10 @@ private:
         const Range whole{0, all.back().at_mm};
         const Range within = chain.is_closed ? whole : between_ends(chain, all, whole);
         const bool is_alone = !chain.starts_at_branch && !chain.ends_at_branch;
-        if (!add_range(chain, stations, all, within).empty() || !is_alone) return;
+        const std::vector<Range> wide = wide_ranges(all, within, chain.is_closed);
+        add_strands(chain, stations, all, within, wide);
+        find_broken(all, whole, wide);
+        if (!wide.empty() || !is_alone) return;
         const Station& widest =
             *std::max_element(all.begin(), all.end(), [](const Station& a, const Station& b) {
                 return a.point.radius_mm < b.point.radius_mm;
@@ -214,31 +218,64 @@ private:
         const Range ends{outside.front().from_mm, outside.back().to_mm};
         const Range within = chain.is_closed ? ends : between_ends(chain, all, ends);
         for (const Range& range : outside) {
-            const auto is_there = [&](const Stretch& stretch) {
-                return meet(stretch.range, range);
-            };
+            std::vector<Stretch> here;
+            std::copy_if(narrow.begin(), narrow.end(), std::back_inserter(here),
+                         [&](const Stretch& stretch) { return meet(stretch.range, range); });
             const Range open = common(range, within);
-            if (!(open.from_mm < open.to_mm) ||
-                std::none_of(narrow.begin(), narrow.end(), is_there))
-                continue;
-            for (const Range& wide : add_range(chain, stations, all, open))
-                for (const Stretch& stretch : narrow)
-                    if (meet(stretch.range, wide)) met.push_back(stretch.inside);
+            if (here.empty() || !(open.from_mm < open.to_mm)) continue;
+            std::vector<Range> wide = wide_ranges(all, open, chain.is_closed);
+            find_broken(all, range, wide);
+            // The chain may go on to other parts.
+            std::erase_if(wide, [&](const Range& one) {
+                return std::none_of(here.begin(), here.end(), [&](const Stretch& stretch) {
+                    return meet(stretch.range, one);
+                });
+            });
+            for (const Range& one : wide)
+                for (const Stretch& stretch : here)
+                    if (meet(stretch.range, one)) met.push_back(stretch.inside);
+            const Range part{here.front().range.from_mm, here.back().range.to_mm};
+            add_strands(chain, stations, all, common(open, part), wide);
         }
     }
 
-    // The strands along a range. Gives where it is wide enough for them.
-    std::vector<Range> add_range(const MedialChain& chain, const Stations& stations,
-                                 const std::vector<Station>& all, const Range& range) {
-        std::vector<Range> wide = wide_ranges(all, range, chain.is_closed);
-        made_.left_out_mm2 += area_mm2(part(stations, range.from_mm, range.to_mm));
+    // The strands along ranges that are wide enough for them; what else is in the part is left out.
+    void add_strands(const MedialChain& chain, const Stations& stations,
+                     const std::vector<Station>& all, const Range& whole,
+                     const std::vector<Range>& wide) {
+        const auto within_mm2 = [&](const Range& range) {
+            return range.from_mm < range.to_mm
+                       ? area_mm2(part(stations, range.from_mm, range.to_mm))
+                       : 0;
+        };
+        made_.left_out_mm2 += within_mm2(whole);
         for (const Range& one : wide) {
-            const Stations within = part(stations, one.from_mm, one.to_mm);
-            made_.left_out_mm2 -= area_mm2(within);
-            add_strand(within,
+            made_.left_out_mm2 -= within_mm2(common(one, whole));
+            add_strand(part(stations, one.from_mm, one.to_mm),
                        chain.is_closed && one.from_mm == 0 && one.to_mm == all.back().at_mm);
         }
-        return wide;
+    }
+
+    // Where strands, or one and what is covered beside the range, have more between them than they reach over.
+    void find_broken(const std::vector<Station>& all, const Range& range,
+                     const std::vector<Range>& wide) {
+        if (made_.broken || wide.empty()) return;
+        double from = range.from_mm > 0 ? range.from_mm : wide.front().from_mm;
+        for (std::size_t i = 0; i <= wide.size(); ++i) {
+            const double end = range.to_mm < all.back().at_mm ? range.to_mm : wide.back().to_mm;
+            const double to = i < wide.size() ? wide[i].from_mm : end;
+            if (to - from > request_.min_width_mm) made_.broken = narrowest(all, {from, to});
+            if (i < wide.size()) from = wide[i].to_mm;
+        }
+    }
+
+    static std::optional<Point2> narrowest(const std::vector<Station>& all, const Range& range) {
+        const MedialPoint* least = nullptr;
+        for (const Station& station : all)
+            if (range.from_mm <= station.at_mm && station.at_mm <= range.to_mm &&
+                (!least || station.point.radius_mm < least->radius_mm))
+                least = &station.point;
+        return least ? std::optional(least->centre) : std::nullopt;
     }
 
     // Without corners, and what lies in the strands that it branches off from. Ends of the range that are not the

@@ -19,10 +19,13 @@
 //     width, if that is not too short.
 //  6. `unresolved` counts regions that nothing could be made of in full: numbers that are not finite or out of range,
 //     or contours that wind around a point more than once.
+//  7. `broken` is a place where strands that follow each other, or one and what is covered at a joint, are farther apart
+//     than the least width, because what is between them is narrower.
 
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -43,6 +46,7 @@ struct CentreLineRequest {
 struct CentreLines {
     std::vector<Strand> strands{};
     double left_out_mm2 = 0, beside_mm2 = 0, corners_mm2 = 0;
+    std::optional<Point2> broken{};  // see 7
     std::size_t unresolved = 0;
 };
 

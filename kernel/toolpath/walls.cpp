@@ -15,6 +15,7 @@
 #include "kernel/toolpath/fitted_walls.h"
 #include "kernel/toolpath/infill.h"
 #include "kernel/toolpath/islands.h"
+#include "kernel/toolpath/lost_webs.h"
 #include "kernel/toolpath/strip_area.h"
 
 namespace lyr {
@@ -199,10 +200,13 @@ private:
         return offset_by(bounded(), base_mm_ - distance_mm, request_.corner);
     }
 
-    // What lies that deep made larger. Its corners are mitred, but not where it points into what is narrow.
-    std::vector<Contour> grown(Region inner, double inside_mm, double distance_mm) {
+    // What lies that deep made larger. Corners of the outermost wall are mitred, but not where it points into what is narrow;
+    // between walls, mitres leave fewer and shorter gaps.
+    std::vector<Contour> grown(Region inner, std::uint32_t depth, double inside_mm,
+                               double distance_mm) {
         const CornersOf corners{bounded().boundary, inside_mm - base_mm_};
-        return offset_by(BoundedRegion(inner), distance_mm, Corner::mitre, &corners);
+        return offset_by(BoundedRegion(inner), distance_mm, Corner::mitre,
+                         depth == 0 ? &corners : nullptr);
     }
 
     // Walls from here on are offsets of this one.
@@ -296,12 +300,13 @@ private:
     // is left out that is too narrow for a line.
     bool separate_narrow(std::uint32_t depth) {
         const std::vector<Contour> outside = outer(depth);
-        std::vector<Contour> wall = inner(depth), wide = wide_parts(wall, middle_mm(depth));
+        std::vector<Contour> wall = inner(depth), wide = wide_parts(wall, depth);
         const bool is_cut = wide.size() < wall.size() || !goes_around(outside, wall, depth) ||
                             area_mm2(wall) - area_mm2(wide) > unseen_mm * unseen_mm;
         if (!is_cut && is_reached(outside, depth)) return false;
         if (is_cut) wall = std::move(wide);
-        const std::vector<Contour> covered = grown(wall, middle_mm(depth), outwards_mm(depth));
+        const std::vector<Contour> covered =
+            grown(wall, depth, middle_mm(depth), outwards_mm(depth));
         // Else only edges have vanished.
         if (!is_cut && goes_around(outside, covered, depth) &&
             area_mm2(outside) - area_mm2(covered) <= unseen_mm * unseen_mm)
@@ -313,11 +318,12 @@ private:
     }
 
     // The parts of a wall whose opposite sides are far enough from each other.
-    std::vector<Contour> wide_parts(Region wall, double middle_mm) {
+    std::vector<Contour> wide_parts(Region wall, std::uint32_t depth) {
         const double half_mm = least_space_share * spacing_mm_ / 2;
         const double margin_mm = cut_margin_share * request_.width_mm;
+        const double inside_mm = middle_mm(depth) + half_mm;
         const std::vector<Contour> wide =
-            grown(shrunk(middle_mm + half_mm), middle_mm + half_mm, half_mm + margin_mm);
+            grown(shrunk(inside_mm), depth, inside_mm, half_mm + margin_mm);
         if (wide.empty()) return {};
         return operated(wall, wide, Operation::intersect);
     }
@@ -335,15 +341,18 @@ private:
         const std::vector<Contour> fit = offset_by(bounded_rest, -half_mm, Corner::round);
         const CornersOf corners{bounded_rest.boundary, half_mm};
         const std::vector<Contour> opened =
-            offset_by(BoundedRegion(fit), half_mm, Corner::mitre, &corners);
+            offset_by(BoundedRegion(fit), half_mm, Corner::mitre, depth == 0 ? &corners : nullptr);
         const std::vector<Contour> narrow =
             opened.empty() ? opened : operated(opened, rest, Operation::intersect);
         const double left_out_mm2 = area_mm2(rest) - area_mm2(narrow);
         walls_.left_out_mm2 += left_out_mm2;
         const bool is_seen = left_out_mm2 > unseen_mm * unseen_mm;
-        if (depth == 0)
-            walls_.too_thin_mm2 +=
+        if (depth == 0) {
+            walls_.too_thin_mm2 =
                 is_seen ? beyond_mm2(rest, covered) - beyond_mm2(narrow, covered) : left_out_mm2;
+            walls_.lost_web = lost_web(rest, narrow, bounded().boundary,
+                                       {request_.min_width_mm, request_.allowed_mm});
+        }
         auto& list = depth == 0 ? walls_.thin : walls_.gaps;
         list.insert(list.end(), narrow.begin(), narrow.end());
         return is_seen;

@@ -9,13 +9,15 @@
 //     `thin` (no wall at all fits) or `gaps` (none beside the walls that do), as the region to be filled from flank to
 //     flank. Thin parts narrower than `min_width_mm` and gaps narrower than `min_gap_mm` are left out and their area
 //     counted; that of thin parts, where no wall is printed at all, once more by itself.
-//     Where they go over into walls there are joints, by which strands find the walls to end at.
+//     Where they go over into walls there are joints, by which strands find the walls to end at. Where a web is too thin
+//     for that, so that it joins nothing, is `lost_web`, the first such place.
 //  3. `inside` is what the walls leave for fill: within the inner flanks of the innermost.
 //  4. Of a count of 0 everything is inside.
 
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "kernel/toolpath/joint.h"
@@ -27,7 +29,7 @@ namespace lyr {
 struct WallRequest {
     std::uint32_t count = 2;
     double width_mm = 0.45, height_mm = 0.2;
-    double overlap = 1;         // see 1; in [0, 1]
+    double overlap = 1;                           // see 1; in [0, 1]
     double min_width_mm = 0.2, min_gap_mm = 0.1;  // of thin parts and gaps that are filled
     bool thin_walls = true, gap_fill = true;
     Corner corner = Corner::round;
@@ -40,7 +42,9 @@ struct Walls {
     std::vector<Contour> inside{};
     std::vector<Joint> thin_joints{}, gap_joints{};
     std::vector<Contour> thin{}, gaps{};
-    double left_out_mm2 = 0, too_thin_mm2 = 0;  // without `thin_walls`, of all that no wall fits into
+    std::optional<Point2> lost_web{};
+    double left_out_mm2 = 0,
+           too_thin_mm2 = 0;  // without `thin_walls`, of all that no wall fits into
     std::size_t second_method = 0, unresolved = 0;  // of the offsets and region operations
 };
 

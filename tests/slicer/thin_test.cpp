@@ -109,6 +109,27 @@ TEST_CASE("pins and walls of less than 0.22 mm were left out without a word") {
     CHECK(wall.diagnostics[0].where.y_mm.value() == doctest::Approx(6).epsilon(0.01));
 }
 
+TEST_CASE(
+    "a short neck thinner than the least width was lost without a word: two bodies came apart") {
+    for (const double neck_mm : {0.1, 0.15, 0.18, 0.22, 0.3}) {
+        CAPTURE(neck_mm);
+        Model all = box(4, 4, 1);
+        append(all, at(box(4, 4, 1), 4.3, 0, 0));
+        append(all, at(box(0.5, neck_mm, 1), 2.15, 0, 0));
+        const Printed made = printed(all);
+        REQUIRE(made.summary);
+        REQUIRE(made.diagnostics.size() == (neck_mm < 0.2 ? 1 : 0));
+        if (neck_mm > 0.2) continue;
+        const Diagnostic& warning = made.diagnostics[0];
+        CHECK(
+            warning.message.starts_with("parts thinner than 0.2 mm (perimeters.min_width) are "
+                                        "left out in 5 layers, from z = 0 to 1 mm"));
+        CHECK(warning.where.layer == 1);
+        CHECK(warning.where.x_mm.value() == doctest::Approx(4.15).epsilon(0.01));
+        CHECK(warning.where.y_mm.value() == doctest::Approx(2).epsilon(0.01));
+    }
+}
+
 TEST_CASE("pins of 0.25 to 0.6 mm are printed") {
     for (const double pin_mm : {0.25, 0.3, 0.4, 0.45, 0.6}) {
         CAPTURE(pin_mm);
