@@ -17,6 +17,8 @@ endif()
 set(CMAKE_C_COMPILER ${lyr_triplet}-gcc)
 set(CMAKE_CXX_COMPILER ${lyr_triplet}-g++)
 set(CMAKE_STRIP ${lyr_triplet}-strip)
+# GCC's note, class after class, that before GCC 7 it passed some of them otherwise: all is built by one compiler.
+set(CMAKE_CXX_FLAGS_INIT -Wno-psabi)
 set(CMAKE_LIBRARY_ARCHITECTURE ${lyr_triplet})
 set(CMAKE_CROSSCOMPILING_EMULATOR ${lyr_emulator};-L;/usr/${lyr_triplet})
 set(CMAKE_FIND_ROOT_PATH ${LYR_SYSROOT})
