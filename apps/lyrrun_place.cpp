@@ -65,12 +65,16 @@ Status calibrate(const Program& program, std::vector<home::Calibration> wanted, 
         text += found->text;
         job.printer = found->printer;
     }
-    if (job.printer.calibration_file.empty())
+    const std::string& file = job.printer.calibration_file;
+    // A real print would follow the bed of a machine that never was.
+    if (job.simulate || file.empty())
         return tell(text +
-                    "The printer's file names no calibration_file to keep this in; it is\n\n" +
+                    (file.empty()
+                         ? "The printer's file names no calibration_file to keep this in; it is\n\n"
+                         : "Simulated, it is not kept in " + file + "; it is\n\n") +
                     home::calibration_toml(job.printer));
     if (const Status kept = keep(job.printer); !kept) return kept;
-    return tell(text + "  kept in " + job.printer.calibration_file + '\n');
+    return tell(text + "  kept in " + file + '\n');
 }
 
 }  // namespace

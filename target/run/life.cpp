@@ -134,6 +134,11 @@ void Life::unload() {
 
 void Life::resume() {
     if (phase_ != Phase::resting) return refuse(Resume{}, "the print does not rest");
+    if (cold_by_hand_c_)
+        return refuse(
+            Resume{},
+            formatted("the tool was set to %g °C, and filament is pushed from %g °C on",
+                      *cold_by_hand_c_, printer_.heaters[config::heater_tool]->min_extrude_c));
     message_.clear();
     standby_.fill(false);
     desk_.set_standby(standby_);
@@ -142,10 +147,12 @@ void Life::resume() {
 
 void Life::set_temperature(const SetTemperature& set) {
     const config::Heater& heater = *printer_.heaters[set.heater];
-    const bool pushes = phase_ != Phase::resting && set.heater == config::heater_tool;
-    if (pushes && set.target_c < heater.min_extrude_c)
+    const bool is_tool = set.heater == config::heater_tool;
+    const bool is_cold = is_tool && set.target_c < heater.min_extrude_c;
+    if (is_cold && phase_ != Phase::resting)
         return refuse(
             set, formatted("filament is pushed from %g °C on; pause first", heater.min_extrude_c));
+    if (is_tool) cold_by_hand_c_ = is_cold ? std::optional(set.target_c) : std::nullopt;
     desk_.set_target(set.heater, set.target_c);
 }
 

@@ -8,7 +8,8 @@
 //  1. A pause brings the head to rest on its path; then the filament is drawn back, the head lifted and parked. What
 //     resumes goes back the same way. All in all no motor has moved then, but the extruder's by what a change of filament
 //     purges, and the path goes on with the event at which it was left.
-//  2. Filament is moved only if the tool has min_extrude_c, before a resume it is heated and waited for.
+//  2. Filament is moved only if the tool has min_extrude_c, before a resume it is heated and waited for. A tool that was set
+//     to less in a pause must be set to more before it.
 //  3. A pause that lasts for longer than printer.toml says lets tool, bed and chamber go cold.
 //  4. A cancel takes all heat away, parks too, and ends by a request to stop; an emergency stop does so at once, and calls
 //     `cut`.
@@ -124,6 +125,8 @@ private:
     bool is_unloaded_ = false;
     bool rests_again_ = false;  // as soon as it has returned
     std::array<bool, config::heater_count> standby_{};
+    std::optional<double>
+        cold_by_hand_c_;  // what the tool was set to in a rest, if no filament can be pushed then
     std::uint32_t layer_ = 0;
     JournalWriter* journal_ = nullptr;
     JournalEntry noted_;

@@ -23,6 +23,13 @@ Folder with_printer(const std::string& more = "") {
     return folder;
 }
 
+// What a simulation shows, kept by hand.
+void keep(const Folder& folder, const std::string& name, const Ended& found) {
+    const std::size_t at = found.out.find("\n\n");
+    REQUIRE(at != std::string::npos);
+    folder.write(name, found.out.substr(at + 2));
+}
+
 }  // namespace
 
 TEST_CASE("lyrrun --home: says what was homed and where the head is") {
@@ -91,7 +98,18 @@ TEST_CASE("lyrrun --home: options that make no sense together, and printers that
     check_failure(folder.run("lyrrun --home --printer p.toml"), "lyrrun", 7, "axis.x.step");
 }
 
-TEST_CASE("lyrrun --calibrate: keeps what was found beside the printer, and a print follows it") {
+TEST_CASE("lyrrun --calibrate: a simulation wrote over what the machine was calibrated to") {
+    const Folder folder("calibrate-kept");
+    folder.write("p.toml", "calibration_file = \"found.toml\"\n" + axes + "[probe]\ninput = 9\n");
+    const std::string real = "[probe]\noffset_mm = [0, 0, 1.25]\n";
+    folder.write("found.toml", real);
+    const Ended shown = folder.run("lyrrun --calibrate mesh --simulate --printer p.toml");
+    CHECK(shown.status == 0);
+    CHECK(shown.out.find("not kept in found.toml") != std::string::npos);
+    CHECK(text_of(folder / "found.toml") == real);
+}
+
+TEST_CASE("lyrrun --calibrate: a print follows what was found") {
     const Folder folder("calibrate");
     const std::string head = "name = \"crooked\"\ncalibration_file = \"found.toml\"\n";
     const std::string tail =
@@ -103,17 +121,17 @@ TEST_CASE("lyrrun --calibrate: keeps what was found beside the printer, and a pr
     CHECK(found.status == 0);
     CHECK(found.err.empty());
     CHECK(found.out.find("the bed is from 0.0") != std::string::npos);
-    CHECK(found.out.find("kept in found.toml") != std::string::npos);
-    CHECK(text_of(folder / "found.toml").find("heights_mm = [") != std::string::npos);
+    CHECK(found.out.find("heights_mm = [") != std::string::npos);
+    keep(folder, "found.toml", found);
     const std::string print = write_print("followed", {draw_square, draw_arcs}, {0, false, 60, 60});
     const Ended printed = folder.run("lyrrun " + print + " --simulate --printer p.toml");
     CHECK(printed.status == 0);
     CHECK(printed.out.find("within half a microstep everywhere") != std::string::npos);
     // With z by an endstop the probe's own height can be found, and the mesh stays.
-    CHECK(folder.run("lyrrun --calibrate probe --simulate --printer p.toml").status == 0);
-    const std::string kept = text_of(folder / "found.toml");
-    CHECK(kept.find("heights_mm") != std::string::npos);
-    CHECK(kept.find("offset_mm = [3.0000, -4.0000, ") != std::string::npos);
+    const Ended probed = folder.run("lyrrun --calibrate probe --simulate --printer p.toml");
+    CHECK(probed.status == 0);
+    CHECK(probed.out.find("heights_mm") != std::string::npos);
+    CHECK(probed.out.find("offset_mm = [3.0000, -4.0000, ") != std::string::npos);
 }
 
 TEST_CASE("lyrrun --calibrate: the sample delta, perturbed, from the outside") {
@@ -125,6 +143,7 @@ TEST_CASE("lyrrun --calibrate: the sample delta, perturbed, from the outside") {
     CHECK(first.status == 0);
     CHECK(first.out.find("the bed was found up to 0.") != std::string::npos);
     CHECK(first.out.find("with this frame it is 0.00") != std::string::npos);
+    keep(folder, "delta-calibration.toml", first);
     const Ended second = folder.run("lyrrun --calibrate delta --simulate --printer p.toml");
     CHECK(second.out.find("the bed was found up to 0.00") != std::string::npos);
 }

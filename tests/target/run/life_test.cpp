@@ -190,6 +190,21 @@ TEST_CASE(
     CHECK(ends[1].elapsed_s - ends[0].elapsed_s > 370 + 60);
 }
 
+TEST_CASE("life 2: a tool that was set to 0 in a pause pushed its filament cold after the resume") {
+    const std::string file =
+        write_print("life_set_cold", {draw_square, draw_circles}, {}, heated(210, 60));
+    const Result<SimulationReport> plain = simulated(file, "", parking_printer(), false);
+    REQUIRE_MESSAGE(plain.ok(), message_of(plain));
+    const auto at = [&](double after_s) { return std::to_string(plain->waited_s + after_s) + ' '; };
+    const std::string cold = at(2) + "pause\n" + at(20) + "set tool 0\n" + at(60) + "resume\n";
+    const Result<SimulationReport> refused = simulated(file, cold, parking_printer(), false);
+    CHECK(message_of(refused).find("the print rests") != std::string::npos);
+    const Result<SimulationReport> warm = simulated(
+        file, cold + at(61) + "set tool 210\n" + at(62) + "resume\n", parking_printer(), false);
+    REQUIRE_MESSAGE(warm.ok(), message_of(warm));
+    check_same_path(*warm, *plain);
+}
+
 TEST_CASE("life 4: a cancel parks the head and ends; so it does in a pause and on the way back") {
     for (const char* script : {"0.1 cancel", "4 cancel", "4 pause\n4.2 cancel",
                                "4 pause\n60 cancel", "4 pause\n60 resume\n60.2 cancel"}) {
