@@ -106,11 +106,25 @@ private:
                (reaches || is_reached(outer(depth), depth));
     }
 
+    // Contours that lie around material, and the area of all.
+    struct Extent {
+        double area_mm2 = 0;
+        std::ptrdiff_t outer = 0;
+    };
+
+    static Extent extent_of(Region region) {
+        Extent extent;
+        for (const Contour& contour : region) {
+            const double area = lyr::area_mm2(contour);
+            extent.area_mm2 += area;
+            extent.outer += area > 0;
+        }
+        return extent;
+    }
+
     // Where a neck or a web is too narrow for a wall, there is a part more or a hole less.
     static bool has_same_parts(Region a, Region b) {
-        const auto is_outer = [](const Contour& contour) { return lyr::area_mm2(contour) > 0; };
-        return a.size() == b.size() && std::count_if(a.begin(), a.end(), is_outer) ==
-                                           std::count_if(b.begin(), b.end(), is_outer);
+        return a.size() == b.size() && extent_of(a).outer == extent_of(b).outer;
     }
 
     // Whether a wall is all around what the walls before leave. Gaps between walls may be cut in two.
@@ -120,8 +134,10 @@ private:
 
     // Whether the boundaries at two distances are what an even change leads to from one to the other.
     static bool is_even(Region outer, Region inner, double distance_mm) {
-        if (!has_same_parts(outer, inner)) return false;
-        const double between = area_mm2(outer) - area_mm2(inner);
+        if (outer.size() != inner.size()) return false;
+        const Extent out = extent_of(outer), in = extent_of(inner);
+        if (out.outer != in.outer) return false;
+        const double between = out.area_mm2 - in.area_mm2;
         const double expected = distance_mm * (length_mm(outer) + length_mm(inner)) / 2;
         return std::abs(between - expected) <= unseen_mm * unseen_mm;
     }
