@@ -57,6 +57,7 @@ public:
     void check_lines();
     void check_heat();
     void check_calibration();
+    void check_files();
     void check_pulses();
     void check_machine();
     // The first problem in the order of the file.
@@ -207,6 +208,26 @@ void Walk::check_heat() {
     if (const auto& fan = draft_.printer.part_fan) both("fan.part", fan->output, fan->pwm);
 }
 
+// Of two that share a channel one would be heated by the other's power, and stay on when that is a fan; of two that share a
+// sensor nobody would watch one.
+void Walk::check_files() {
+    std::map<std::string, std::string> users;
+    const auto use = [&](const std::string& path, std::string file) {
+        while (file.ends_with('/')) file.pop_back();
+        if (file.empty()) return;
+        const auto [user, fresh] = users.emplace(file, path);
+        if (!fresh) problem(place(path), path + ": this file is already used by " + user->second);
+    };
+    for (std::size_t i = 0; i < heater_count; ++i) {
+        const std::optional<Heater>& heater = draft_.printer.heaters[i];
+        if (!heater) continue;
+        const std::string section = "heater." + std::string(heater_names[i]);
+        use(section + ".pwm", heater->pwm);
+        use(section + ".sensor.file", heater->sensor.file);
+    }
+    if (const auto& fan = draft_.printer.part_fan) use("fan.part.pwm", fan->pwm);
+}
+
 // Only what is written there again when something else is calibrated.
 void Walk::check_calibration() {
     for (const auto& [path, where] : places_) {
@@ -308,6 +329,7 @@ Result<Printer> parse_printer(std::string_view text, const std::string& file) {
     if (!walk.first_problem()) walk.check_missing();
     walk.check_lines();
     walk.check_heat();
+    walk.check_files();
     walk.check_pulses();
     if (!walk.first_problem()) walk.check_machine();
     if (const auto* problem = walk.first_problem())

@@ -90,10 +90,14 @@ std::vector<std::size_t> order_of(const config::Printer& printer, AxisSet axes) 
     return order;
 }
 
-Status lift(ByAxes& machine, const config::Printer& printer,
+Status lift(Mover& mover, ByAxes& machine, const config::Printer& printer,
             const std::vector<std::size_t>& order) {
     const bool z_up = printer.endstops[axis_z].input && printer.endstops[axis_z].at_high_end;
     if (printer.homing.lift_mm == 0 || (z_up && order.front() == axis_z)) return Done{};
+    const Result<Contacts> touched = mover.touched();
+    if (!touched) return touched.error();
+    // One that is touched already triggers no more: the axis is as high as it can be.
+    if (z_up && (*touched)[axis_z]) return Done{};
     Contacts watched;
     watched[axis_z] = z_up;
     const Result<Moved> moved =
@@ -115,10 +119,10 @@ Status go_to_probe(ByAxes& machine, const config::Printer& printer) {
     return moved ? Status(Done{}) : moved.error();
 }
 
-Result<double> home_by_axes(ByAxes& machine, const config::Printer& printer,
+Result<double> home_by_axes(Mover& mover, ByAxes& machine, const config::Printer& printer,
                             const std::vector<std::size_t>& order) {
     double repeat_mm = 0;
-    if (Status lifted = lift(machine, printer, order); !lifted) return lifted.error();
+    if (Status lifted = lift(mover, machine, printer, order); !lifted) return lifted.error();
     for (const std::size_t axis : order) {
         const Target target = target_of(printer, axis);
         if (target.contact == config::contact_probe)
@@ -175,7 +179,8 @@ Result<Homed> home(Mover& mover, const config::Printer& printer, AxisSet axes) {
     if (axes[axis_z] && z_by_probe(printer)) axes |= possible;
     ByAxes machine(mover, machine_by_axes(printer));
     if (!is_delta(printer)) {
-        const Result<double> repeat_mm = home_by_axes(machine, printer, order_of(printer, axes));
+        const Result<double> repeat_mm =
+            home_by_axes(mover, machine, printer, order_of(printer, axes));
         if (!repeat_mm) return repeat_mm.error();
         const auto& [x, y, z] = machine.at_mm();
         return Homed{{x, y, z}, *repeat_mm};

@@ -408,6 +408,8 @@ Result<PrintReport> print(const PrintJob& job) {
     if (!prepared) return prepared.error();
     const Result<std::vector<gpio::LineRequest>> requests = line_requests(job.printer);
     if (!requests) return requests.error();
+    // From here on lines are held: one that comes between homing and printing must not be lost, nor end the program.
+    const StopSignals signals;
     const Result<std::unique_ptr<gpio::GpioChip>> chip = gpio::open_gpiod_chip(*requests);
     if (!chip) return chip.error();
     gpio::MonotonicClock clock;

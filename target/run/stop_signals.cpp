@@ -21,7 +21,10 @@ StopSignals::StopSignals() {
 }
 
 StopSignals::~StopSignals() {
-    // What arrived after the print was over has nothing left to stop.
+    // Who blocked them before hears of what arrived since.
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+        if (sigismember(&before_, signal) == 1) sigdelset(&signals_, signal);
+    // To nobody else it is of use: there is nothing left to stop.
     while (wait_ms(0)) continue;
     pthread_sigmask(SIG_SETMASK, &before_, nullptr);
 }

@@ -6,6 +6,7 @@
 //     threads that it starts; those that are ignored, as under nohup(1), stay ignored.
 //  2. wait_ms(t) returns true as soon as one of them arrives, and false after t milliseconds without;
 //     each arrival is told once.
+//  3. They may be nested: what the inner one was not asked for is left to the outer one.
 
 #pragma once
 

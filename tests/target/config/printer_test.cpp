@@ -285,6 +285,19 @@ TEST_CASE("printer 2: what is wrong with heat is told with its key") {
           "already used by heater.tool.output");
 }
 
+TEST_CASE("printer: a heater and a fan shared a PWM channel, and two heaters a sensor") {
+    const auto check = [](const std::string& text, const std::string& part) {
+        const Result<Printer> refused = parse_printer(good + '\n' + text, "heat.toml");
+        REQUIRE_FALSE(refused.ok());
+        CHECK_MESSAGE(refused.error().message == part, refused.error().message);
+        CHECK(refused.error().where.line > 0);
+    };
+    check("[heater.tool]\npwm = \"/sys/p\"\n[fan.part]\npwm = \"/sys/p/\"\n",
+          "fan.part.pwm: this file is already used by heater.tool.pwm");
+    check("[heater.tool]\nsensor.file = \"/sys/a\"\n[heater.bed]\nsensor.file = \"/sys/a\"\n",
+          "heater.bed.sensor.file: this file is already used by heater.tool.sensor.file");
+}
+
 TEST_CASE("printer: files that are missing, folders or far too large are refused by name") {
     const auto missing = read_printer("/nonexistent/printer.toml");
     REQUIRE_FALSE(missing.ok());

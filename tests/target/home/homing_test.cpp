@@ -30,7 +30,38 @@ thermal::Fault fault(double time_s, thermal::FaultKind kind, std::size_t contact
     return fault;
 }
 
+// Lines of a machine that is looked at after each write.
+class HighestPlace final : public gpio::GpioChip {
+public:
+    explicit HighestPlace(home::SimulatedMachine& machine)
+        : machine_(machine), highest_mm_(machine.head().z) {}
+    std::size_t line_count() const override { return machine_.chip().line_count(); }
+    Status write(gpio::LineMask changed, gpio::LineMask levels) override {
+        Status written = machine_.chip().write(changed, levels);
+        highest_mm_ = std::max(highest_mm_, machine_.head().z);
+        return written;
+    }
+    Status release() override { return machine_.chip().release(); }
+    double highest_mm() const { return highest_mm_; }
+
+private:
+    home::SimulatedMachine& machine_;
+    double highest_mm_;
+};
+
 }  // namespace
+
+TEST_CASE("homing 2: a head at the upper endstop of z was lifted into it first") {
+    config::Printer printer = machine_of(Kinematics::cartesian);
+    printer.endstops[config::axis_z].at_high_end = true;
+    printer.simulated.head_mm = {100, 100, 100.1};
+    home::SimulatedMachine machine(printer, {});
+    HighestPlace chip(machine);
+    home::Mover mover(printer, chip, machine.clock(), &machine.inputs(), nullptr);
+    const auto homed = home::home(mover, printer, home::homable(printer));
+    REQUIRE_MESSAGE(homed.ok(), homed.error().message);
+    CHECK(chip.highest_mm() < 100.2);
+}
 
 TEST_CASE("homing 1: the head's place is found to a microstep, wherever it was") {
     std::mt19937 random(3);

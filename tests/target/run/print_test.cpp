@@ -223,6 +223,16 @@ TEST_CASE("stop signals 1: a signal that is ignored stays ignored") {
     std::signal(SIGHUP, before);
 }
 
+TEST_CASE("stop signals 3: a SIGTERM between homing and the print was lost") {
+    const StopSignals of_print;
+    {
+        const StopSignals of_homing;
+        std::raise(SIGTERM);
+    }
+    CHECK(of_print.wait_ms(0));
+    CHECK_FALSE(of_print.wait_ms(0));
+}
+
 TEST_CASE("event ring 1, 3: everything comes out once and in order, between two threads") {
     EventRing ring(256);
     constexpr std::int64_t count = 200'000;
