@@ -235,9 +235,9 @@ TEST_CASE(
     bed.sensor.file = folder / "sensor";
     printer.heaters[config::heater_bed] = bed;
     const auto duty_ns = [&] {
-        long duty_ns = -1;
-        std::ifstream(folder / "duty_cycle") >> duty_ns;
-        return duty_ns;
+        long written_ns = -1;
+        std::ifstream(folder / "duty_cycle") >> written_ns;
+        return written_ns;
     };
     CHECK(ends_by(SIGKILL, [&] {
         Result<Heating> heating = open_heating(printer);
