@@ -97,7 +97,7 @@ void add_place_options(Options& app, PlaceArguments& arguments) {
             return std::nullopt;
         },
         "Move the head by so much from the start of a print, in place of one; homes first where "
-        "the printer can");
+        "the printer can, else the head is in the middle of its ranges");
     add_text(
         app, "--calibrate", "[WHAT]",
         [&arguments](const std::string& value) -> std::optional<std::string> {

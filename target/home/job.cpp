@@ -22,6 +22,14 @@ motion::Point start_of(const config::Printer& printer) {
     return {printer.start_mm[0], printer.start_mm[1], printer.start_mm[2]};
 }
 
+// Where an owner is told to push the head by hand.
+motion::Point middle_of(const config::Printer& printer) {
+    const auto middle_mm = [&](std::size_t axis) {
+        return (printer.axes[axis].min_mm + printer.axes[axis].max_mm) / 2;
+    };
+    return {middle_mm(config::axis_x), middle_mm(config::axis_y), middle_mm(config::axis_z)};
+}
+
 Result<std::unique_ptr<gpio::InputLines>> open_inputs(const config::Printer& printer) {
     const std::vector<gpio::InputRequest> requests = contact_requests(printer);
     if (requests.empty()) return std::unique_ptr<gpio::InputLines>();
@@ -74,7 +82,7 @@ Status with_machine(const Job& job, Diagnostics& warnings, const Work& work) {
 
 Result<Report> home(const Job& job, AxisSet axes, const std::optional<motion::Point>& jog_mm) {
     Report report;
-    const motion::Point start = start_of(job.printer);
+    const motion::Point start = axes.any() ? start_of(job.printer) : middle_of(job.printer);
     report.head = start;
     report.homed = axes;
     if (jog_mm) {

@@ -39,7 +39,8 @@ struct Report {
 using Work = std::function<Status(Mover& mover)>;
 Status with_machine(const Job& job, Diagnostics& warnings, const Work& work);
 
-// Homes, and goes to the start of a print; a jog, where given, follows. Without axes to home, a jog is one from there.
+// Homes, and goes to the start of a print; a jog, where given, follows. Without axes to home, a jog begins in the middle
+// of the ranges.
 Result<Report> home(const Job& job, AxisSet axes, const std::optional<motion::Point>& jog_mm);
 
 // What a print on this printer begins with homing; none: with nothing.

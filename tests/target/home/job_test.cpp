@@ -66,3 +66,17 @@ TEST_CASE("homing before a print 4: without endstops of x and y none resumes wit
     printer.homing.before_print = false;
     CHECK(home::homed_before_print(printer, false).none());
 }
+
+TEST_CASE(
+    "a head pushed to the middle, of a printer without endstops, could be jogged one way only") {
+    for (const double way_mm : {-10.0, 10.0}) {
+        home::Job job{.printer = machine_of(Kinematics::cartesian), .simulate = true};
+        job.printer.endstops = {};
+        job.printer.start_mm = {0, 0, 0};
+        const config::Axis& x = job.printer.axes[config::axis_x];
+        const auto report = home::home(job, {}, motion::Point{way_mm, 0, 0});
+        REQUIRE_MESSAGE(report.ok(), report.error().message);
+        CHECK(report->head.x == (x.min_mm + x.max_mm) / 2 + way_mm);
+        CHECK(report->homed.none());
+    }
+}
