@@ -8,11 +8,15 @@
 
 #pragma once
 
+#include <cstddef>
 #include <optional>
 
 #include "kernel/toolpath/boundary.h"
 
 namespace lyr {
+
+// How often the part's boundary goes over from something else to the outline: twice or more in a web or a neck, once in a tip.
+std::size_t sides_on(Region part, const Boundary& outline, double allowed_mm);
 
 struct WebRequest {
     double min_width_mm, allowed_mm;  // nothing in `narrow` is narrower

@@ -25,6 +25,10 @@ constexpr double clear_share = 0.25;
 // are a little rounded, lead past it.
 constexpr double corner_share = 0.2;
 
+// So many times as far from the mitre's point its sides are looked at: a wall that is cut off square beside a straight
+// edge has a mitre that ends on the edge, and there no corner is.
+constexpr double sides_seen = 4;
+
 std::optional<OffsetFault> fault_of(const RegionResult& result, const BoundedRegion& region,
                                     const OffsetRequest& request) {
     if (result.unresolved > 0) return OffsetFault{OffsetFault::Kind::region};
@@ -51,8 +55,16 @@ std::optional<OffsetResult> trimmed(const BoundedRegion& region, const OffsetReq
 }  // namespace
 
 bool CornersOf::contains(const Point2& corner, const Vector2& outwards) const {
-    return boundary.is_near(corner + inside_mm / outwards.squaredNorm() * outwards,
-                            corner_share * inside_mm);
+    const double cosine = outwards.norm(), sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+    const Vector2 middle = outwards / cosine;
+    const Point2 point = corner + inside_mm / cosine * middle;
+    // From the mitre's point back along the sides, which turn to the left.
+    const Vector2 across = left_of(middle);
+    const double near_mm = corner_share * inside_mm, back_mm = sides_seen * near_mm;
+    const Point2 before = point - back_mm * (cosine * across + sine * middle);
+    const Point2 after = point + back_mm * (cosine * across - sine * middle);
+    return boundary.is_near(point, near_mm) && boundary.is_near(before, near_mm) &&
+           boundary.is_near(after, near_mm);
 }
 
 OffsetResult settled(const RegionResult& first, const BoundedRegion& region,

@@ -31,8 +31,9 @@ namespace lyr {
 
 enum class Corner { round, mitre };
 
-// Corners of a boundary, seen from a region that lies within it: those whose mitres at that distance end on the boundary.
-// Where sides meet that are not beside each other there, as at the mouth of a passage, the mitre's point is in mid-air.
+// Corners of a boundary, seen from a region that lies within it: those whose mitres at that distance end on the boundary, as
+// do their sides. Where sides meet that are not beside each other there, as at the mouth of a passage, the mitre's point is in
+// mid-air; where a web was cut off, it may be on an edge, but no side goes across.
 struct CornersOf {
     const Boundary& boundary;
     double inside_mm;

@@ -35,6 +35,9 @@ const double bluntest_tip_cosine = -std::cos(2 * std::asin(1 / mitre_limit));
 // share of the width.
 constexpr double cut_margin_share = 0.05;
 
+// Of a neck in which walls are not taken off each other, at most: half of it are the flanks of their ends.
+constexpr double longest_neck_widths = 2;
+
 // How far around narrow parts joints reach: discs that fit where no wall does are smaller, and so are all those of what
 // is cut off them by the mitred corners of the walls' flanks.
 constexpr double joint_widths = 2;
@@ -316,7 +319,8 @@ private:
     // is left out that is too narrow for a line.
     bool separate_narrow(std::uint32_t depth) {
         const std::vector<Contour> outside = outer(depth);
-        std::vector<Contour> wall = inner(depth), wide = wide_parts(wall, depth);
+        std::vector<Contour> wall = inner(depth);
+        std::vector<Contour> wide = with_short_necks(wall, wide_parts(wall, depth));
         const bool is_cut = wide.size() < wall.size() || !goes_around(outside, wall, depth) ||
                             area_mm2(wall) - area_mm2(wide) > unseen_mm * unseen_mm;
         if (!is_cut && is_reached(outside, depth)) return false;
@@ -342,6 +346,22 @@ private:
             grown(shrunk(inside_mm), depth, inside_mm, half_mm + margin_mm);
         if (wide.empty()) return {};
         return operated(wall, wide, Operation::intersect);
+    }
+
+    // Between the flanks of two ends that are less than two lines apart there is no room for a strand: rather than a gap
+    // they leave, two walls beside each other go through.
+    std::vector<Contour> with_short_necks(Region wall, std::vector<Contour> wide) {
+        if (wide.empty() || has_same_parts(wall, wide)) return wide;
+        const Boundary flanks(wall);
+        // Half of what is around a neck: its length, and across at each end.
+        const double longest_mm =
+            longest_neck_widths * request_.width_mm + least_space_share * spacing_mm_;
+        std::vector<Contour> necks;
+        for (const auto& part : parts_of(operated(wall, wide, Operation::subtract)))
+            if (lyr::length_mm(part) <= 2 * longest_mm &&
+                sides_on(part, flanks, request_.allowed_mm) >= 2)
+                necks.insert(necks.end(), part.begin(), part.end());
+        return necks.empty() ? wide : operated(wide, necks, Operation::unite);
     }
 
     // What of `outer` a wall and its flanks do not cover, if a line fits into it. Whether anything else is more than is

@@ -316,6 +316,29 @@ TEST_CASE("joints: webs of 0.2 to 0.45 mm were lost where the walls run around b
             check_covered(region, printed(region), around_ends);
 }
 
+TEST_CASE("joints: webs of a line to two, whose walls are cut off each other, had open ends") {
+    for (const double web_mm :
+         {0.46, 0.47, 0.49, 0.52, 0.56, 0.6, 0.64, 0.66, 0.68, 0.69, 0.7, 0.72, 0.74, 0.76})
+        for (const Motion& motion : motions) {
+            CAPTURE(web_mm);
+            for (const Contours& shape : with_web(web_mm)) {
+                const Printed print = printed(lyr::testing::moved(shape, motion));
+                std::vector<Strand> strands = print.made.strands;
+                strands.insert(strands.end(), print.thin.begin(), print.thin.end());
+                // Along its middle, as far as the web is no wider than two lines.
+                for (double x_mm = -0.4; x_mm < 0.41; x_mm += 0.05) {
+                    CAPTURE(x_mm);
+                    const Point2 point = motion({x_mm, 0});
+                    CHECK(std::any_of(strands.begin(), strands.end(), [&](const Strand& strand) {
+                        const double width =
+                            strand.widths_mm.empty() ? strand.width_mm : strand.widths_mm.front();
+                        return Boundary({&strand.path, 1}).is_near(point, width / 2);
+                    }));
+                }
+            }
+        }
+}
+
 TEST_CASE("joints: webs thinner than the least width were lost without a word") {
     for (const double web_mm : {0.05, 0.1, 0.15, 0.18})
         for (const Motion& motion : motions) {
