@@ -27,8 +27,7 @@ bool is_sliver(const Contour& contour, double width_mm) {
     const double radius = width_mm / 2, inwards = area > 0 ? radius : -radius;
     const auto fits = [&](const Curve& at, double share) {
         const Vector2 tangent = tangent_at(at, share * at.half_mm);
-        const Point2 centre =
-            point_on(at, share * at.half_mm) + inwards * Vector2(-tangent.y(), tangent.x());
+        const Point2 centre = point_on(at, share * at.half_mm) + inwards * left_of(tangent);
         return !count.is_near(centre, touching_share * radius) && !(count.at(centre) == Winding{});
     };
     return std::none_of(sources.begin(), sources.end(), [&](const Source& source) {

@@ -83,7 +83,7 @@ private:
     Path strand(const Wave& wave, const Range& periods, double y_mm) const {
         const auto placed = [&](const Point2& p, double period) {
             const Point2 at = p + Vector2(period * pattern_.period_mm, y_mm);
-            return Point2(at.x() * x_ + at.y() * Vector2(-x_.y(), x_.x()));
+            return Point2(at.x() * x_ + at.y() * left_of(x_));
         };
         Path path{placed(wave.start, periods.first), {}};
         const auto count = static_cast<std::size_t>(periods.last - periods.first + 1);

@@ -23,9 +23,8 @@ std::size_t parts_within(Region narrow, Region part, double inside_mm) {
             if (area_mm2(contour) <= 0) return false;
             const std::vector<BoundaryPiece> pieces = boundary_pieces({&contour, 1});
             if (pieces.empty()) return false;
-            const Vector2& along = pieces.front().middle_tangent;
-            const Vector2 left(-along.y(), along.x());
-            return boundary.winding(pieces.front().middle + inside_mm * left) > 0;
+            const Vector2 inwards = inside_mm * left_of(pieces.front().middle_tangent);
+            return boundary.winding(pieces.front().middle + inwards) > 0;
         }));
 }
 

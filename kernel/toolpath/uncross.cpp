@@ -181,7 +181,7 @@ Path Uncrosser::followed_from(std::uint32_t first, std::vector<bool>& followed) 
 }
 
 std::optional<bool> Uncrosser::is_border(const Point2& point, const Vector2& tangent) const {
-    const Vector2 left = probe_share * clear_mm_ * Vector2(-tangent.y(), tangent.x());
+    const Vector2 left = probe_share * clear_mm_ * left_of(tangent);
     const int inside = curves_.boundary.winding(point + left);
     const int outside = curves_.boundary.winding(point - left);
     if (inside != outside + 1) return std::nullopt;

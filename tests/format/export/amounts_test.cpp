@@ -9,6 +9,7 @@
 #include <set>
 
 #include "../files.h"
+#include "../gcode_of.h"
 #include "format/arc.h"
 #include "format/c/lyr.h"
 #include "format/export/gcode.h"
@@ -17,6 +18,7 @@
 
 using namespace lyr;
 using namespace lyr::format;
+using test::gcode_of;
 using test::GcodeMachine;
 using test::GcodeMove;
 
@@ -178,17 +180,6 @@ Amounts amounts_of(const std::string& path) {
     }
     REQUIRE(!reader->error());
     return amounts;
-}
-
-std::string gcode_of(const std::string& path, const GcodeOptions& options) {
-    auto reader = Reader::open(path);
-    REQUIRE(reader.ok());
-    std::string text;
-    Diagnostics diagnostics;
-    REQUIRE(write_gcode(
-                *reader, options, [&](std::string_view piece) { text += piece; }, diagnostics)
-                .ok());
-    return text;
 }
 
 // Which ways of packing motions the file has.

@@ -8,6 +8,7 @@
 
 #include "../../target/run/print_files.h"
 #include "../files.h"
+#include "../gcode_of.h"
 #include "../sample.h"
 #include "base/base64.h"
 #include "format/arc.h"
@@ -16,6 +17,7 @@
 
 using namespace lyr;
 using namespace lyr::format;
+using test::gcode_of;
 using test::GcodeMachine;
 using test::GcodeMove;
 
@@ -23,22 +25,6 @@ namespace {
 
 // One digit of what is written, and what doubles add.
 constexpr double digit_mm = 0.001, slack_mm = 1e-9;
-
-std::string gcode_of(const std::string& path, const GcodeOptions& options,
-                     Diagnostics& diagnostics) {
-    auto reader = Reader::open(path);
-    REQUIRE(reader.ok());
-    std::string text;
-    const Status done = write_gcode(
-        *reader, options, [&](std::string_view piece) { text += piece; }, diagnostics);
-    REQUIRE_MESSAGE(done.ok(), to_string(done.error()));
-    return text;
-}
-
-std::string gcode_of(const std::string& path, const GcodeOptions& options) {
-    Diagnostics diagnostics;
-    return gcode_of(path, options, diagnostics);
-}
 
 struct Motion {
     Operation operation;

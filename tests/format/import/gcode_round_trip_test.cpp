@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "../../target/run/print_files.h"
+#include "../gcode_of.h"
 #include "../sample.h"
 #include "format/arc.h"
 #include "format/export/gcode.h"
@@ -10,21 +11,11 @@
 
 using namespace lyr;
 using namespace lyr::format;
+using test::gcode_of;
 using test::GivenOperation;
 using test::Imported;
 
 namespace {
-
-std::string gcode_of(const std::string& path, const GcodeOptions& options) {
-    auto reader = Reader::open(path);
-    REQUIRE(reader.ok());
-    std::string text;
-    Diagnostics diagnostics;
-    REQUIRE(write_gcode(
-                *reader, options, [&](std::string_view piece) { text += piece; }, diagnostics)
-                .ok());
-    return text;
-}
 
 // Motions of some length, hatches as lines and travels; a layer's start as the point that it is.
 std::vector<GivenOperation> motions_of(const Imported& print) {
