@@ -38,7 +38,12 @@ public:
     void operator()(const format::Operation& operation) {
         if (const auto* layer = std::get_if<format::LayerStart>(&operation))
             z_mm_ = (layer->index + 0.5) * layer_height_mm_ + origin_.z();
-        if (const auto* path = std::get_if<format::PathStart>(&operation)) style_ = path->style;
+        if (const auto* path = std::get_if<format::PathStart>(&operation)) {
+            style_ = path->style;
+            path_begin_ = pieces_.size();
+        }
+        if (const auto* width = std::get_if<format::Width>(&operation))
+            change_width(width->width_mm);
         if (style_.role != format::Role::outer_wall) return;
         if (const auto* line = std::get_if<format::Line>(&operation))
             add(line->from, {at(line->to), 0});
@@ -50,6 +55,16 @@ public:
     const std::vector<WallPiece>& pieces() const { return pieces_; }
 
 private:
+    // Where a wall goes on with another width, its middle goes across by half of the difference, so that its flank goes on
+    // straight. That step is within what the wall covers and has no outer flank.
+    void change_width(double width_mm) {
+        const double step_mm = std::abs(width_mm - style_.width_mm) / 2 + 2 * quantum_mm_;
+        style_.width_mm = width_mm;
+        if (pieces_.size() == path_begin_) return;
+        const WallPiece& last = pieces_.back();
+        if (last.segment.sagitta_mm == 0 && length_mm(last.start, last.segment) <= step_mm)
+            pieces_.pop_back();
+    }
     Point2 at(const format::Point& point) const {
         return Point2(static_cast<double>(point.x), static_cast<double>(point.y)) * quantum_mm_ +
                origin_.head<2>();
@@ -76,6 +91,7 @@ private:
     double z_mm_ = 0;
     format::PathStyle style_{};
     std::vector<WallPiece> pieces_;
+    std::size_t path_begin_ = 0;
 };
 
 Result<std::vector<WallPiece>> walls_of(const std::string& lyr_path, double layer_height_mm,
