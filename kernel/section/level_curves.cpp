@@ -42,6 +42,12 @@ struct CellCurve {
     CellEnd start, end;
 };
 
+// A cell's curve being sampled. Its middle is asked for more than once.
+struct Sampled {
+    const CellCurve& curve;
+    std::optional<CurvePoint> middle{};
+};
+
 // The end of a cell's curve: that of the next one may begin there.
 struct Reached {
     const BezierPatch* patch;
@@ -69,12 +75,13 @@ private:
                  double at, std::uint32_t crossing);
     Vector2 extent(const CellCurve& curve) const;
     double bend_mm(const CellCurve& curve) const;
-    int first_spans(const CellCurve& curve, const CurvePoint& start, double chord_mm) const;
+    int first_spans(Sampled& sampled, const CurvePoint& start, double chord_mm) const;
     bool is_corner(const CurvePoint& before, const CurvePoint& at, const Vector2& leaving,
                    const CurvePoint& after) const;
     void sample(const CellCurve& curve, LevelCurve& out, std::optional<Reached>& reached) const;
-    void refine(const CellCurve& curve, double from, const CurvePoint& start, double to,
+    void refine(Sampled& sampled, double from, const CurvePoint& start, double to,
                 const CurvePoint& end, int depth, bool settled, LevelCurve& out) const;
+    CurvePoint point_at(Sampled& sampled, double share) const;
     Point2 solve(const CellCurve& curve, double share) const;
     Point2 solve_across(const CellCurve& curve, double share) const;
     CurvePoint point_at(const BezierPatch& patch, const Point2& uv) const;
@@ -222,19 +229,26 @@ Point2 Tracker::solve(const CellCurve& curve, double share) const {
     return chord;
 }
 
+CurvePoint Tracker::point_at(Sampled& sampled, double share) const {
+    if (share == 0.5 && sampled.middle) return *sampled.middle;
+    const CellCurve& curve = sampled.curve;
+    const MonotoneCell& cell = mesh_.cells[static_cast<std::size_t>(curve.cell)];
+    const CurvePoint at = point_at(mesh_.patches[cell.patch], solve(curve, share));
+    if (share == 0.5) sampled.middle = at;
+    return at;
+}
+
 // Halves a span until the cubic through its ends foretells the middle, point and tangent. What the cubic is off is s^2 (1 -
 // s)^2 times a polynomial, whose value in the middle the point tells, and the tangent its slope. The middle is kept, and of
 // the first part a sixteenth remains: it goes with the fourth power of the length.
-void Tracker::refine(const CellCurve& curve, double from, const CurvePoint& start, double to,
+void Tracker::refine(Sampled& sampled, double from, const CurvePoint& start, double to,
                      const CurvePoint& end, int depth, bool settled, LevelCurve& out) const {
     constexpr int deepest = 40;
     const double length = (end.point - start.point).norm();
     if (length <= resolution_mm || depth > deepest) return;
     if (settled && sagitta_mm(start, end) <= allowed_mm_) return;
     const double middle = 0.5 * (from + to);
-    const BezierPatch& patch =
-        mesh_.patches[mesh_.cells[static_cast<std::size_t>(curve.cell)].patch];
-    const CurvePoint at = point_at(patch, solve(curve, middle));
+    const CurvePoint at = point_at(sampled, middle);
     // Against the cubic as a curve: where along it the middle comes to lie is the parameter's affair.
     const double share = std::clamp(
         (at.point - start.point).dot(end.point - start.point) / (length * length), 0.0, 1.0);
@@ -243,9 +257,9 @@ void Tracker::refine(const CellCurve& curve, double from, const CurvePoint& star
     const double skew = skew_share * length * std::abs(cross(foretold.tangent, at.tangent));
     const bool fine = off <= allowed_mm_ && skew <= allowed_mm_ &&
                       sagitta_mm(start, end) <= farthest_from_chord_mm;
-    if (!fine) refine(curve, from, start, middle, at, depth + 1, true, out);
+    if (!fine) refine(sampled, from, start, middle, at, depth + 1, true, out);
     out.points.push_back(at);
-    if (!fine) refine(curve, middle, at, to, end, depth + 1, true, out);
+    if (!fine) refine(sampled, middle, at, to, end, depth + 1, true, out);
 }
 
 // Of a box in the parameters that holds the curve.
@@ -273,7 +287,8 @@ double Tracker::bend_mm(const CellCurve& curve) const {
 
 // Into how many spans a cell's curve is divided to begin with: one that comes back to where it began (a cell may go once
 // around a closed surface) has no chord to measure against.
-int Tracker::first_spans(const CellCurve& curve, const CurvePoint& start, double chord_mm) const {
+int Tracker::first_spans(Sampled& sampled, const CurvePoint& start, double chord_mm) const {
+    const CellCurve& curve = sampled.curve;
     const MonotoneCell& cell = mesh_.cells[static_cast<std::size_t>(curve.cell)];
     if (cell.kind == CellKind::flat) return 0;
     // Ends and tangents alone do not tell of a bend between them: a curve of degree 4 can leave along its chord and
@@ -284,7 +299,7 @@ int Tracker::first_spans(const CellCurve& curve, const CurvePoint& start, double
     const int most = std::max(patch.degree_u, patch.degree_v) / 2 + 1;
     const int spans = static_cast<int>(std::clamp(cubic_spans, 1.0, static_cast<double>(most)));
     if (chord_mm > farthest_from_chord_mm) return spans;
-    const CurvePoint middle = point_at(patch, solve(curve, 0.5));
+    const CurvePoint middle = point_at(sampled, 0.5);
     const bool returns = (middle.point - start.point).norm() > std::max(chord_mm, resolution_mm);
     return returns ? std::max(spans, 4) : spans;
 }
@@ -307,7 +322,8 @@ void Tracker::sample(const CellCurve& curve, LevelCurve& out,
     reached = Reached{&patch, curve.end.uv, end};
     const Vector2 chord = end.point - start.point;
     const double length = chord.norm();
-    const int spans = first_spans(curve, start, length);
+    Sampled sampled{curve};
+    const int spans = first_spans(sampled, start, length);
     // At a level point of the surface, and in a flat cell, the tangent says nothing.
     const Vector2 direction = length > 0 ? Vector2(chord / length) : start.tangent;
     if (cell.kind == CellKind::flat || start.tangent.isZero()) start.tangent = direction;
@@ -321,8 +337,8 @@ void Tracker::sample(const CellCurve& curve, LevelCurve& out,
     CurvePoint from = start;
     for (int i = 1; i <= spans; ++i) {
         const double share = static_cast<double>(i) / spans;
-        const CurvePoint to = i == spans ? end : point_at(patch, solve(curve, share));
-        refine(curve, share - 1.0 / spans, from, share, to, 0, spans > 1, out);
+        const CurvePoint to = i == spans ? end : point_at(sampled, share);
+        refine(sampled, share - 1.0 / spans, from, share, to, 0, spans > 1, out);
         if (i < spans) out.points.push_back(to);
         from = to;
     }
