@@ -32,21 +32,6 @@ void bernstein_basis(std::size_t n, double t, Row& value) {
     for (std::size_t i = n + 1; i-- > 0; power *= 1 - t) value[i] *= power;
 }
 
-// And their derivatives, from those of one degree less: B'_i = n (B_{i-1} - B_i).
-void bernstein_basis(std::size_t n, double t, Row& value, Row& slope) {
-    Row lower;
-    bernstein_basis(n - 1, t, lower);
-    const auto factor = static_cast<double>(n);
-    slope[0] = -factor * lower[0];
-    slope[n] = factor * lower[n - 1];
-    value[0] = (1 - t) * lower[0];
-    value[n] = t * lower[n - 1];
-    for (std::size_t i = 1; i < n; ++i) {
-        slope[i] = factor * (lower[i - 1] - lower[i]);
-        value[i] = t * lower[i - 1] + (1 - t) * lower[i];
-    }
-}
-
 void split(const Row& line, int degree, double t, Row& left, Row& right) {
     right = line;
     for (int level = degree; level >= 0; --level) {
@@ -106,27 +91,37 @@ void append_turns(const Stretch& stretch, int& last, std::vector<double>& turns)
 
 }  // namespace
 
+// By all but the last step of de Casteljau's algorithm in both directions, which leaves the corners of a bilinear patch that
+// touches this one there.
 Partials partials(const BezierPatch& patch, const Point2& uv) {
     const double width_u = patch.to_u - patch.from_u, width_v = patch.to_v - patch.from_v;
-    Row u, v, du, dv;
+    const double s = (uv.x() - patch.from_u) / width_u, t = (uv.y() - patch.from_v) / width_v;
     const auto degree_u = static_cast<std::size_t>(patch.degree_u);
     const auto degree_v = static_cast<std::size_t>(patch.degree_v);
-    bernstein_basis(degree_u, (uv.x() - patch.from_u) / width_u, u, du);
-    bernstein_basis(degree_v, (uv.y() - patch.from_v) / width_v, v, dv);
+    Row u, v;
+    bernstein_basis(degree_u - 1, s, u);
+    bernstein_basis(degree_v - 1, t, v);
     using Eigen::Vector4d;
-    Vector4d point = Vector4d::Zero(), by_u = Vector4d::Zero(), by_v = Vector4d::Zero();
-    const std::size_t columns = degree_v + 1;
-    for (std::size_t i = 0; i <= degree_u; ++i) {
-        Vector4d row = Vector4d::Zero(), row_by_v = Vector4d::Zero();
-        for (std::size_t j = 0; j < columns; ++j) {
-            const Vector4d& control = patch.control_points[i * columns + j];
-            row += v[j] * control;
-            row_by_v += dv[j] * control;
+    std::array<Vector4d, 2> low, high;  // by v: corners at the lower and the higher u
+    low.fill(Vector4d::Zero());
+    high.fill(Vector4d::Zero());
+    const Vector4d* control = patch.control_points.data();
+    for (std::size_t i = 0; i <= degree_u; ++i, ++control) {
+        Vector4d left = Vector4d::Zero(), right = Vector4d::Zero();
+        for (std::size_t j = 0; j < degree_v; ++j, ++control) {
+            left += v[j] * control[0];
+            right += v[j] * control[1];
         }
-        point += u[i] * row;
-        by_u += du[i] * row;
-        by_v += u[i] * row_by_v;
+        const double at_low = i < degree_u ? u[i] : 0, at_high = i > 0 ? u[i - 1] : 0;
+        low[0] += at_low * left;
+        low[1] += at_low * right;
+        high[0] += at_high * left;
+        high[1] += at_high * right;
     }
+    const Vector4d at_t = (1 - t) * low[0] + t * low[1], beyond = (1 - t) * high[0] + t * high[1];
+    const Vector4d point = (1 - s) * at_t + s * beyond;
+    const Vector4d by_u = patch.degree_u * (beyond - at_t);
+    const Vector4d by_v = patch.degree_v * ((1 - s) * (low[1] - low[0]) + s * (high[1] - high[0]));
     const Point3 at = point.head<3>() / point.w();
     return {at, (by_u.head<3>() - by_u.w() * at) / (point.w() * width_u),
             (by_v.head<3>() - by_v.w() * at) / (point.w() * width_v)};
