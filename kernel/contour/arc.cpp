@@ -57,16 +57,14 @@ double length_mm(const Point2& start, const Segment& segment) {
     return (c * c / s2 + s2) * std::atan(s2 / c);
 }
 
-// Half the square of the radius times sweep - sin(sweep); for a flat arc without what cancels.
+// Half the square of the radius times sweep - sin(sweep), where t = tan(sweep / 4) gives the sine; for a flat arc without
+// what cancels.
 double enclosed_area_mm2(const Point2& start, const Segment& segment) {
     const double c = (segment.end - start).norm(), s2 = 2 * segment.sagitta_mm;
     if (s2 == 0) return 0;
-    if (std::abs(s2) <= flat * c) {
-        const double t2 = s2 / c * (s2 / c);
-        return c * s2 / 8 * (3 + t2 - flat_atan_rest(t2) * (1 + t2) * (1 + t2));
-    }
-    const double radius = (c * c / s2 + s2) / 4, sweep = 4 * std::atan(s2 / c);
-    return radius * radius * (sweep - std::sin(sweep)) / 2;
+    const double t = s2 / c, t2 = t * t, rise = (1 + t2) * (1 + t2);
+    if (std::abs(s2) <= flat * c) return c * s2 / 8 * (3 + t2 - flat_atan_rest(t2) * rise);
+    return c * c / (8 * t2) * (rise * std::atan(t) - t * (1 - t2));
 }
 
 namespace {

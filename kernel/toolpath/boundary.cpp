@@ -199,10 +199,35 @@ double Boundary::distance_mm(const Point2& point, double within_mm) const {
     return least;
 }
 
+std::pair<double, double> Boundary::distances_mm(const Point2& a, const Point2& b,
+                                                 double within_mm) const {
+    const Vector2 margin(within_mm, within_mm);
+    std::pair least(within_mm, within_mm);
+    tree_.meeting({a.cwiseMin(b) - margin, a.cwiseMax(b) + margin}, [&](std::uint32_t i) {
+        least.first = std::min(least.first, pieces_[i].distance_mm(a));
+        least.second = std::min(least.second, pieces_[i].distance_mm(b));
+    });
+    return least;
+}
+
 bool Boundary::is_near(const Point2& point, double within_mm, std::size_t except) const {
     const Vector2 margin(within_mm, within_mm);
     return tree_.any({point - margin, point + margin}, [&](std::uint32_t i) {
         return i != except && pieces_[i].distance_mm(point) <= within_mm;
+    });
+}
+
+bool Boundary::is_near(const Point2& point, double within_mm, Guess& guess) const {
+    for (std::size_t i = guess.piece; i < std::min(pieces_.size(), guess.piece + 2); ++i) {
+        if (pieces_[i].distance_mm(point) > within_mm) continue;
+        guess.piece = i;
+        return true;
+    }
+    const Vector2 margin(within_mm, within_mm);
+    return tree_.any({point - margin, point + margin}, [&](std::uint32_t i) {
+        if (pieces_[i].distance_mm(point) > within_mm) return false;
+        guess.piece = i;
+        return true;
     });
 }
 

@@ -15,6 +15,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "kernel/region/box_tree.h"
@@ -81,7 +82,15 @@ public:
 
     const std::vector<BoundaryPiece>& pieces() const { return pieces_; }
     double distance_mm(const Point2& point, double within_mm) const;
+    // Of two points that are near each other.
+    std::pair<double, double> distances_mm(const Point2& a, const Point2& b,
+                                           double within_mm) const;
     bool is_near(const Point2& point, double within_mm, std::size_t except = none) const;
+    // The piece that was found last, for points that go along the boundary: that one and the next are looked at first.
+    struct Guess {
+        std::size_t piece = 0;
+    };
+    bool is_near(const Point2& point, double within_mm, Guess& guess) const;
     std::optional<std::uint32_t> nearest(const Point2& point, double within_mm) const;
     int winding(const Point2& point) const;
     // Strictly between the ends, in their order, in place of what `found` held.

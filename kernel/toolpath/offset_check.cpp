@@ -70,7 +70,8 @@ private:
         return outwards_ ? right_of(tangent) : Vector2(-right_of(tangent));
     }
 
-    Fault wrong_distance_at(const Point2& point) const;
+    double far_mm() const { return mitred_mm_ + slack_mm_; }
+    Fault wrong_distance_at(const Point2& point, double source_mm) const;
     Fault wrong_distance() const;
     std::optional<bool> has_material_left(std::size_t index, const Point2& point,
                                           const Vector2& tangent) const;
@@ -79,7 +80,7 @@ private:
     bool may_be_mitred(const Point2& point) const;
     std::optional<Point2> deep_beside(const Point2& place, const Vector2& towards) const;
     Fault missing_beside(const Point2& place, const Vector2& towards, const Point2& deep,
-                         std::vector<bool>::reference counted) const;
+                         std::vector<bool>::reference counted, Boundary::Guess& guess) const;
     double beside_mm(const BoundaryPiece& piece) const;
     double places_beside(const BoundaryPiece& piece) const;
     Fault missing() const;
@@ -91,21 +92,20 @@ private:
     const Boundary &source_, &result_;
 };
 
-Check::Fault Check::wrong_distance_at(const Point2& point) const {
-    const double far_mm = mitred_mm_ + slack_mm_;
-    const double distance = source_.distance_mm(point, far_mm + slack_mm_);
+Check::Fault Check::wrong_distance_at(const Point2& point, double source_mm) const {
     // Not "less or more": what is no number is wrong.
-    if (distance >= distance_mm_ - slack_mm_ && distance <= far_mm) return std::nullopt;
+    if (source_mm >= distance_mm_ - slack_mm_ && source_mm <= far_mm()) return std::nullopt;
     return OffsetFault{Kind::distance, point,
-                       source_.distance_mm(point, 2 * far_mm) - distance_mm_};
+                       source_.distance_mm(point, 2 * far_mm()) - distance_mm_};
 }
 
 Check::Fault Check::wrong_distance() const {
     for (const BoundaryPiece& piece : result_.pieces()) {
-        if (!piece.is_circle) {
-            if (auto found = wrong_distance_at(piece.start)) return found;
-        }
-        if (auto found = wrong_distance_at(piece.middle)) return found;
+        const auto [start_mm, middle_mm] =
+            source_.distances_mm(piece.start, piece.middle, far_mm() + slack_mm_);
+        auto found = wrong_distance_at(piece.middle, middle_mm);
+        if (!found && !piece.is_circle) found = wrong_distance_at(piece.start, start_mm);
+        if (found) return found;
     }
     return std::nullopt;
 }
@@ -190,9 +190,10 @@ std::optional<Point2> Check::deep_beside(const Point2& place, const Vector2& tow
 // On the way to a point deep in the offset from the place that it is beside, the middle of which is surely not in the
 // offset, is the offset's boundary: at the distance. Windings are counted once a contour.
 Check::Fault Check::missing_beside(const Point2& place, const Vector2& towards, const Point2& deep,
-                                   std::vector<bool>::reference counted) const {
+                                   std::vector<bool>::reference counted,
+                                   Boundary::Guess& guess) const {
     const Point2 expected = place + distance_mm_ * towards;
-    bool found = result_.is_near(expected, boundary_share * slack_mm_);
+    bool found = result_.is_near(expected, boundary_share * slack_mm_, guess);
     if (found && !counted) {
         // Outwards, the offset is what the result leaves.
         const int in = outwards_ ? 0 : 1;
@@ -222,11 +223,12 @@ double Check::places_beside(const BoundaryPiece& piece) const {
 Check::Fault Check::missing() const {
     Fault found;
     std::vector<bool> counted(source_contours_.size(), false);
+    Boundary::Guess guess;
     // Whether a disc fits there.
     const auto look = [&](const BoundaryPiece& piece, const Point2& place, const Vector2& tangent) {
         const Vector2 towards = across(tangent);
         const auto deep = found ? std::nullopt : deep_beside(place, towards);
-        if (deep) found = missing_beside(place, towards, *deep, counted[piece.contour]);
+        if (deep) found = missing_beside(place, towards, *deep, counted[piece.contour], guess);
         return deep.has_value();
     };
     constexpr double far_mm = std::numeric_limits<double>::infinity();
