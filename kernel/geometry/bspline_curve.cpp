@@ -123,12 +123,12 @@ void append_pieces(const BSplineCurve& curve, double from, double to,
         const double b = std::min(to, curve.knots[span + 1]);
         if (!(a < b)) continue;
         BezierPiece piece{a, b, std::vector<Homogeneous>(degree + 1)};
-        const Triangle<Homogeneous> controls(curve, span,
-                                             [&](std::size_t i) { return homogeneous(curve, i); });
+        Triangle<Homogeneous> to_b(curve, span,
+                                   [&](std::size_t i) { return homogeneous(curve, i); });
         for (std::size_t i = 0; i <= degree; ++i) {
-            Triangle<Homogeneous> blossom = controls;
-            for (std::size_t level = 1; level <= degree; ++level)
-                blossom.apply(level, level <= i ? b : a);
+            if (i > 0) to_b.apply(i, b);
+            Triangle<Homogeneous> blossom = to_b;
+            for (std::size_t level = i + 1; level <= degree; ++level) blossom.apply(level, a);
             piece.control_points[i] = blossom.top();
         }
         pieces.push_back(std::move(piece));
@@ -143,8 +143,22 @@ Coefficients component(const BezierPiece& piece, Eigen::Index row, double base) 
     return c;
 }
 
+// Whether the control points only rise or only fall: so does the curve then, which meets no plane more often than they do.
+bool is_plainly_monotone(const BezierPiece& piece) {
+    bool rises = true, falls = true;
+    double before = piece.control_points.front().z() / piece.control_points.front().w();
+    for (const Homogeneous& control : piece.control_points) {
+        const double height = control.z() / control.w();
+        rises = rises && height >= before;
+        falls = falls && height <= before;
+        before = height;
+    }
+    return rises || falls;
+}
+
 // Parameters inside the piece between which the height is monotone. With z = Z/w, z' has the sign of Z'w - Zw'.
 std::vector<double> turning_candidates(const BezierPiece& piece) {
+    if (is_plainly_monotone(piece)) return {};
     const double base = piece.control_points.front().z() / piece.control_points.front().w();
     const Coefficients z = component(piece, 2, base), w = component(piece, 3, 0);
     const Coefficients slope =

@@ -114,7 +114,9 @@ bool Indexer::record() {
 bool Indexer::skip_list(int depth) {
     const char* open = p_;
     while (true) {
-        while (p_ < end_ && !has_class(*p_, detail::in_record)) ++p_;
+        const char* p = p_;
+        while (p < end_ && !has_class(*p, detail::in_record)) ++p;
+        p_ = p;
         if (p_ == end_) {
             return fail(
                 open, "the file ends before the bracket that opens here is closed; is it cut off?");
