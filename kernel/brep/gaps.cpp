@@ -5,26 +5,12 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
-#include <numeric>
 #include <utility>
+
+#include "base/disjoint_sets.h"
 
 namespace lyr {
 namespace {
-
-class Sets {
-public:
-    explicit Sets(std::size_t count) : parent_(count) {
-        std::iota(parent_.begin(), parent_.end(), std::size_t{0});
-    }
-    std::size_t find(std::size_t i) {
-        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    void join(std::size_t a, std::size_t b) { parent_[find(a)] = find(b); }
-
-private:
-    std::vector<std::size_t> parent_;
-};
 
 void measure(const Model& model, const std::vector<const FreeEdge*>& edges, Gap& gap) {
     constexpr int chords = 16;
@@ -50,16 +36,16 @@ void measure(const Model& model, const std::vector<const FreeEdge*>& edges, Gap&
 
 std::vector<Gap> gaps(const Model& model) {
     const std::vector<FreeEdge> free = free_edges(model);
-    Sets sets(free.size());
-    std::map<std::pair<ShellId, VertexId>, std::size_t> known;
-    for (std::size_t i = 0; i < free.size(); ++i) {
+    DisjointSets sets(free.size());
+    std::map<std::pair<ShellId, VertexId>, std::uint32_t> known;
+    for (std::uint32_t i = 0; i < free.size(); ++i) {
         const Edge& edge = model[free[i].edge];
         for (const VertexId vertex : {edge.start, edge.end}) {
             sets.join(i, known.try_emplace({model[free[i].face].shell, vertex}, i).first->second);
         }
     }
     std::vector<std::vector<const FreeEdge*>> by_set(free.size());
-    for (std::size_t i = 0; i < free.size(); ++i) by_set[sets.find(i)].push_back(&free[i]);
+    for (std::uint32_t i = 0; i < free.size(); ++i) by_set[sets.of(i)].push_back(&free[i]);
     std::erase_if(by_set, [](const auto& edges) { return edges.empty(); });
     std::sort(by_set.begin(), by_set.end(),
               [](const auto& a, const auto& b) { return a.front() < b.front(); });

@@ -1,8 +1,8 @@
 #include "kernel/section/freeform_face.h"
 
 #include <algorithm>
-#include <numeric>
 
+#include "base/disjoint_sets.h"
 #include "kernel/section/face_outline.h"
 
 namespace lyr {
@@ -14,23 +14,6 @@ HeightRange hull_of(const BSplineSurface& surface) {
                             [](const Point3& a, const Point3& b) { return a.z() < b.z(); });
     return {low->z(), high->z()};
 }
-
-// The vertices of a mesh in parts that hang together.
-class Parts {
-public:
-    explicit Parts(std::size_t vertices) : next_(vertices) {
-        std::iota(next_.begin(), next_.end(), 0u);
-    }
-
-    std::uint32_t of(std::uint32_t vertex) {
-        while (next_[vertex] != vertex) vertex = next_[vertex] = next_[next_[vertex]];
-        return vertex;
-    }
-    void join(std::uint32_t a, std::uint32_t b) { next_[of(a)] = of(b); }
-
-private:
-    std::vector<std::uint32_t> next_;  // on the way to the one that stands for the part
-};
 
 // Where a face may be higher than a border that none of its edges is above.
 //
@@ -62,7 +45,7 @@ private:
     }
 
     std::vector<std::uint32_t> of_parts() const {
-        Parts parts(mesh_.vertices.size());
+        DisjointSets parts(mesh_.vertices.size());
         for (const BorderPiece& piece : mesh_.pieces)
             if (is_sure(piece.from) && is_sure(piece.to)) parts.join(piece.from, piece.to);
         constexpr std::uint32_t none = ~std::uint32_t{0};

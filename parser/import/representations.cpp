@@ -3,9 +3,7 @@
 
 #include "parser/import/representations.h"
 
-#include <algorithm>
 #include <array>
-#include <numeric>
 
 #include "parser/import/solids.h"
 
@@ -55,8 +53,7 @@ Defined defined(const File& file, InstanceIndex definition) {
 Result<RepresentationTable> RepresentationTable::read(const File& file) {
     RepresentationTable table;
     if (const Status status = table.read_representations(file); !status) return status.error();
-    table.joined_.resize(table.representations.size());
-    std::iota(table.joined_.begin(), table.joined_.end(), 0u);
+    table.joined_ = DisjointSets(table.representations.size());
     if (const Status status = table.read_definitions(file); !status) return status.error();
     if (const Status status = table.read_relationships(file); !status) return status.error();
     if (const Status status = table.read_usages(file); !status) return status.error();
@@ -75,14 +72,11 @@ RepresentationId RepresentationTable::of_product(InstanceIndex product_definitio
 }
 
 RepresentationId RepresentationTable::united(RepresentationId representation) const {
-    std::uint32_t i = representation.value;
-    while (joined_[i] != i) i = joined_[i] = joined_[joined_[i]];
-    return RepresentationId(i);
+    return RepresentationId(joined_.of(representation.value));
 }
 
 void RepresentationTable::unite(RepresentationId a, RepresentationId b) {
-    const std::uint32_t i = united(a).value, j = united(b).value;
-    joined_[std::max(i, j)] = std::min(i, j);
+    joined_.join(a.value, b.value);
 }
 
 Status RepresentationTable::read_representations(const File& file) {

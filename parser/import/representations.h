@@ -12,6 +12,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "base/disjoint_sets.h"
 #include "parser/import/entity.h"
 
 namespace lyr::importer {
@@ -72,7 +73,7 @@ private:
 
     std::unordered_map<std::uint32_t, RepresentationId> by_instance_;
     std::unordered_map<std::uint32_t, RepresentationId> by_product_;
-    mutable std::vector<std::uint32_t> joined_;  // towards united(); shortened on the way
+    mutable DisjointSets joined_;
 };
 
 // PRODUCT.name of a product definition, "" where the file does not lead there.
