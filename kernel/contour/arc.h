@@ -20,6 +20,7 @@ namespace lyr {
 struct Segment {
     Point2 end;
     double sagitta_mm = 0;
+    friend bool operator==(const Segment&, const Segment&) = default;
 };
 
 struct ArcCircle {

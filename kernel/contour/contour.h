@@ -22,12 +22,14 @@ namespace lyr {
 struct Path {
     Point2 start;
     std::vector<Segment> segments;
+    friend bool operator==(const Path&, const Path&) = default;
 };
 
 struct FullCircle {
     Point2 centre;
     double radius_mm;
     bool counter_clockwise;
+    friend bool operator==(const FullCircle&, const FullCircle&) = default;
 };
 
 using Contour = std::variant<Path, FullCircle>;

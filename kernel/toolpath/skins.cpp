@@ -28,29 +28,6 @@ constexpr double anchor_share = 1;
 
 using Contours = std::vector<Contour>;
 
-bool same_bits(const Segment& a, const Segment& b) {
-    return a.end == b.end && a.sagitta_mm == b.sagitta_mm;
-}
-
-bool same_bits(const Contour& a, const Contour& b) {
-    if (a.index() != b.index()) return false;
-    if (const auto* circle = std::get_if<FullCircle>(&a)) {
-        const auto& other = std::get<FullCircle>(b);
-        return circle->centre == other.centre && circle->radius_mm == other.radius_mm &&
-               circle->counter_clockwise == other.counter_clockwise;
-    }
-    const Path &one = std::get<Path>(a), &other = std::get<Path>(b);
-    return one.start == other.start &&
-           std::equal(one.segments.begin(), one.segments.end(), other.segments.begin(),
-                      other.segments.end(),
-                      [](const Segment& s, const Segment& t) { return same_bits(s, t); });
-}
-
-bool same_bits(Region a, Region b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                      [](const Contour& s, const Contour& t) { return same_bits(s, t); });
-}
-
 // The layers that decide what is solid, and what is so without asking them.
 struct Window {
     std::size_t first, last;  // [first, last), the layer itself among them
@@ -79,9 +56,9 @@ std::vector<Bare> bare_rows(std::span<const SkinOutline> outlines, std::size_t l
     std::vector<std::size_t> others;
     const auto is_new = [&](std::size_t other) {
         const Region region = outlines[other].region();
-        return !same_bits(region, outlines[layer].region()) &&
+        return !std::ranges::equal(region, outlines[layer].region()) &&
                std::none_of(others.begin(), others.end(), [&](std::size_t known) {
-                   return same_bits(region, outlines[known].region());
+                   return std::ranges::equal(region, outlines[known].region());
                });
     };
     // From the layer outwards, so that of the same outlines the nearest counts.
@@ -130,7 +107,7 @@ Questions questions_of(std::span<const SkinOutline> outlines, std::size_t layer,
     // Of the same outlines only one is among them.
     const auto wide = [&](std::size_t other) -> std::vector<std::size_t> {
         for (const Bare& one : bare) {
-            if (same_bits(outlines[one.layer].region(), outlines[other].region()) &&
+            if (std::ranges::equal(outlines[one.layer].region(), outlines[other].region()) &&
                 one.rows.longest_mm() >= wide_share * request.width_mm) {
                 return {one.layer};
             }

@@ -20,16 +20,6 @@ namespace {
 
 using std::numbers::pi;
 
-double length_of(const Path& path) {
-    double sum_mm = 0;
-    Point2 from = path.start;
-    for (const Segment& segment : path.segments) {
-        sum_mm += length_mm(from, segment);
-        from = segment.end;
-    }
-    return sum_mm;
-}
-
 double distance_to(const Path& path, const Point2& point) {
     double nearest_mm = 1e9;
     Point2 from = path.start;
@@ -43,7 +33,7 @@ double distance_to(const Path& path, const Point2& point) {
 // The wipe begins there, stays on what was printed and has the length.
 void check_along(const Path& wipe, const Path& printed, const Point2& begin, double expected_mm) {
     CHECK((wipe.start - begin).norm() < 1e-9);
-    CHECK(length_of(wipe) == doctest::Approx(expected_mm));
+    CHECK(length_mm(Contour(wipe)) == doctest::Approx(expected_mm));
     Point2 from = wipe.start;
     for (const Segment& segment : wipe.segments) {
         for (const double share : {0.0, 0.3, 0.5, 0.8, 1.0})
@@ -95,7 +85,7 @@ TEST_CASE("wipe 1, 2: round a full circle, the way it was printed, once at most"
             const Path wipe =
                 wipe_along(Strand{FullCircle{centre, 2, counter_clockwise}, 0.4}, start, most_mm);
             CHECK(wipe.start == start);
-            CHECK(length_of(wipe) == doctest::Approx(std::min(most_mm, 4 * pi)));
+            CHECK(length_mm(Contour(wipe)) == doctest::Approx(std::min(most_mm, 4 * pi)));
             Point2 from = wipe.start;
             for (const Segment& segment : wipe.segments) {
                 const auto circle = circle_of(from, segment);
@@ -115,14 +105,15 @@ TEST_CASE("wipe 1, 2: back along the rows of a hatch and their links, not over i
     for (const double most_mm : {1.0, 7.9, 9.0, 14.0, 50.0}) {
         const Path wipe = wipe_along(run, most_mm);
         CHECK((wipe.start - end_of(run)).norm() < 1e-9);
-        CHECK(length_of(wipe) == doctest::Approx(std::min(most_mm, rows_mm)));
+        CHECK(length_mm(Contour(wipe)) == doctest::Approx(std::min(most_mm, rows_mm)));
     }
     const Vector2 left(-run.direction.y(), run.direction.x());
     CHECK((wipe_along(run, 50).segments.back().end - (0.5 * run.direction + 4 * left)).norm() <
           1e-9);
     const HatchRun turned = lyr::reversed(run);
     CHECK((wipe_along(turned, 1).start - start_of(run)).norm() < 1e-9);
-    CHECK(length_of(wipe_along(turned, 100)) == doctest::Approx(10 + 8 + std::hypot(1, 0.5)));
+    CHECK(length_mm(Contour(wipe_along(turned, 100))) ==
+          doctest::Approx(10 + 8 + std::hypot(1, 0.5)));
 }
 
 TEST_CASE(

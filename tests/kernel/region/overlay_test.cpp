@@ -83,7 +83,7 @@ TEST_CASE(
                                                       [](Membership m) { return (m & 4) != 0; }},
                                   allowed_mm);
     REQUIRE(results.has_value());
-    CHECK(same_bits((*results)[0].contours, plate));
+    CHECK((*results)[0].contours == plate);
     CHECK((*results)[1].contours.empty());
     CHECK((*results)[2].contours.empty());
 }

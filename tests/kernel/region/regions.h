@@ -197,31 +197,10 @@ inline bool is_closed(const Contour& contour) {
     return !path || (path->segments.size() > 1 && path->segments.back().end == path->start);
 }
 
-inline bool same_bits(const Contour& a, const Contour& b) {
-    if (a.index() != b.index()) return false;
-    if (const auto* circle = std::get_if<FullCircle>(&a)) {
-        const auto& other = std::get<FullCircle>(b);
-        return circle->centre == other.centre && circle->radius_mm == other.radius_mm &&
-               circle->counter_clockwise == other.counter_clockwise;
-    }
-    const Path &one = std::get<Path>(a), &other = std::get<Path>(b);
-    return one.start == other.start &&
-           std::equal(one.segments.begin(), one.segments.end(), other.segments.begin(),
-                      other.segments.end(), [](const Segment& s, const Segment& t) {
-                          return s.end == t.end && s.sagitta_mm == t.sagitta_mm;
-                      });
-}
-
-inline bool same_bits(const Contours& a, const Contours& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                      [](const Contour& s, const Contour& t) { return same_bits(s, t); });
-}
-
 // The same contours in any order.
 inline bool same_set(const Contours& a, Contours b) {
     for (const Contour& contour : a) {
-        const auto found = std::find_if(
-            b.begin(), b.end(), [&](const Contour& other) { return same_bits(contour, other); });
+        const auto found = std::find(b.begin(), b.end(), contour);
         if (found == b.end()) return false;
         b.erase(found);
     }

@@ -148,8 +148,8 @@ TEST_CASE("bridges: every part has its own direction, none is lost") {
     const Contours bridges{rectangle(-0.4, -0.4, 20.4, 8.4), rectangle(29.6, -0.4, 38.4, 20.4)};
     const auto found = bridges_over(bridges, below, spacing_mm);
     REQUIRE(found.size() == 2);
-    CHECK(same_bits(found[0].contours, {bridges[0]}));
-    CHECK(same_bits(found[1].contours, {bridges[1]}));
+    CHECK(found[0].contours == Contours{bridges[0]});
+    CHECK(found[1].contours == Contours{bridges[1]});
     CHECK(apart(found[0].angle_rad.value(), pi / 2) < 1e-6);
     CHECK(apart(found[1].angle_rad.value(), 0) < 1e-6);
 }

@@ -421,8 +421,8 @@ TEST_CASE("centre lines: regions in one call come out as each by itself") {
     const Contours one{rectangle(0, 0, 10, 0.5)}, other{slot(0, 3, 9, 3.7)};
     const CentreLines both = lines_in({one[0], other[0]});
     REQUIRE(both.strands.size() == 2);
-    CHECK(same_bits(both.strands[0].path, lines_in(one).strands[0].path));
-    CHECK(same_bits(both.strands[1].path, lines_in(other).strands[0].path));
+    CHECK(both.strands[0].path == lines_in(one).strands[0].path);
+    CHECK(both.strands[1].path == lines_in(other).strands[0].path);
 }
 
 TEST_CASE("middle path: through points that run to and fro goes no circle of the size of a house") {

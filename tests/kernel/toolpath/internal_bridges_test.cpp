@@ -7,6 +7,7 @@
 #include "kernel/region/regions.h"
 #include "kernel/toolpath/bridges.h"
 #include "kernel/toolpath/offset.h"
+#include "kernel/toolpath/stacks.h"
 
 using namespace lyr;
 using namespace lyr::testing;
@@ -19,8 +20,6 @@ constexpr SkinRequest usual{.top_layers = 3,
                             .width_mm = width_mm,
                             .min_sparse_mm2 = 0,
                             .allowed_mm = allowed_mm};
-
-const std::vector<Motion> motions{{}, {0.4, {3, -7}}, {pi / 2, {0, 1}}, {1.1, {-20, 5}, true}};
 
 struct Bridged {
     Contours sparse_below;
@@ -79,8 +78,8 @@ void check_layers(const std::vector<Bridged>& layers, Random& random, int points
         CAPTURE(i);
         const auto& [sparse_below, before, after] = layers[i];
         CHECK(after.unresolved == 0);
-        CHECK(same_bits(after.sparse, before.sparse));
-        CHECK(same_bits(after.bridge, before.bridge));
+        CHECK(after.sparse == before.sparse);
+        CHECK(after.bridge == before.bridge);
         const double length = total_length(before.solid) + total_length(before.top) +
                               total_length(after.internal_bridge);
         CHECK(std::abs(total_area(after.solid) + total_area(after.top) +
@@ -94,27 +93,6 @@ void check_layers(const std::vector<Bridged>& layers, Random& random, int points
             check_point(layers[i], {random.within(box.min().x() - 1, box.max().x() + 1),
                                     random.within(box.min().y() - 1, box.max().y() + 1)});
     }
-}
-
-std::vector<Contours> staircase() {
-    std::vector<Contours> layers(10, {rectangle(0, 0, 20, 10)});
-    layers.insert(layers.end(), 10, {rectangle(0, 0, 10, 10)});
-    return layers;
-}
-
-std::vector<Contours> lens() {
-    std::vector<Contours> layers;
-    for (int i = 0; i < 24; ++i) {
-        const double z = (i + 0.5) / 12 - 1;
-        layers.push_back({FullCircle{{1, 2}, 12 * std::sqrt(1 - z * z), true}});
-    }
-    return layers;
-}
-
-std::vector<Contours> hollow_box() {
-    std::vector<Contours> layers(20, {rectangle(0, 0, 30, 20)});
-    for (std::size_t i = 6; i < 14; ++i) layers[i].push_back(reversed(rectangle(8, 5, 22, 15)));
-    return layers;
 }
 
 std::vector<Chord> lines_along_x(double pitch_mm, const Motion& motion) {
@@ -166,7 +144,7 @@ TEST_CASE("internal bridges: the first solid layer under a roof or step, and no 
                 CHECK(skins.solid.empty());
             } else {
                 CHECK(skins.internal_bridge.empty());
-                CHECK(same_bits(skins.solid, before.solid));
+                CHECK(skins.solid == before.solid);
             }
         }
     }
@@ -186,7 +164,7 @@ TEST_CASE("internal bridges 1: what is narrower than a bridge stays solid") {
         LayerSkins skins = wide;
         add_internal_bridges(skins, Contours{rectangle(10 - step_mm, -5, 30, 15)}, usual);
         CHECK(skins.internal_bridge.empty() != is_bridged);
-        if (!is_bridged) CHECK(same_bits(skins.solid, wide.solid));
+        if (!is_bridged) CHECK(skins.solid == wide.solid);
         if (is_bridged)
             CHECK(total_area(skins.internal_bridge) ==
                   doctest::Approx(10 * (step_mm + width_mm)).epsilon(1e-6));

@@ -8,6 +8,7 @@
 
 #include "kernel/region/regions.h"
 #include "kernel/toolpath/offset.h"
+#include "kernel/toolpath/stacks.h"
 
 using namespace lyr;
 using namespace lyr::testing;
@@ -101,32 +102,6 @@ void check_stack(const Stack& stack, Random& random, int points) {
     }
 }
 
-const std::vector<Motion> motions{{}, {0.4, {3, -7}}, {pi / 2, {0, 1}}, {1.1, {-20, 5}, true}};
-
-// Ten layers of a plate, ten of its half.
-std::vector<Contours> staircase() {
-    std::vector<Contours> layers(10, {rectangle(0, 0, 20, 10)});
-    layers.insert(layers.end(), 10, {rectangle(0, 0, 10, 10)});
-    return layers;
-}
-
-// A lens: it widens to the middle and closes again.
-std::vector<Contours> lens() {
-    std::vector<Contours> layers;
-    for (int i = 0; i < 24; ++i) {
-        const double z = (i + 0.5) / 12 - 1;
-        layers.push_back({FullCircle{{1, 2}, 12 * std::sqrt(1 - z * z), true}});
-    }
-    return layers;
-}
-
-// A box with a cavity from layer 6 to layer 14.
-std::vector<Contours> hollow_box() {
-    std::vector<Contours> layers(20, {rectangle(0, 0, 30, 20)});
-    for (std::size_t i = 6; i < 14; ++i) layers[i].push_back(reversed(rectangle(8, 5, 22, 15)));
-    return layers;
-}
-
 std::vector<Contours> table() {
     Contours legs;
     for (const double x : {0.0, 26.0})
@@ -176,7 +151,7 @@ TEST_CASE("skins: a step's top is bare on its last layer and solid on those belo
 TEST_CASE("skins: the first layer is all bottom, the last all top, those beside them solid") {
     const Stack stack(staircase());
     const auto all = [&](const Contours& part, std::size_t layer) {
-        return same_bits(part, stack.insides[layer]);
+        return part == stack.insides[layer];
     };
     CHECK(all(stack.skins(0).bottom, 0));
     CHECK(all(stack.skins(1).solid, 1));
@@ -196,7 +171,7 @@ TEST_CASE("skins: over a cavity the roof is a bridge, its floor a top skin") {
         CHECK(stack.skins(15).bridge.empty());
         for (std::size_t layer = 6; layer < 14; ++layer) {
             CHECK(stack.skins(layer).bridge.empty());
-            CHECK(same_bits(stack.skins(layer).sparse, stack.insides[layer]));
+            CHECK(stack.skins(layer).sparse == stack.insides[layer]);
         }
     }
 }
@@ -206,7 +181,7 @@ TEST_CASE("skins: none of the kinds that no layers are asked for") {
     SkinRequest none = usual;
     none.top_layers = none.bottom_layers = 0;
     for (std::size_t layer = 0; layer < stack.outlines.size(); ++layer)
-        CHECK(same_bits(stack.skins(layer, none).sparse, stack.insides[layer]));
+        CHECK(stack.skins(layer, none).sparse == stack.insides[layer]);
 }
 
 TEST_CASE("skins: steps narrower than a line make nothing solid") {
@@ -215,7 +190,7 @@ TEST_CASE("skins: steps narrower than a line make nothing solid") {
         layers.push_back({rectangle(0, 0, 30 - (walls_mm + 0.9 * width_mm) / 3 * i, 10)});
     const Stack stack(layers);
     for (std::size_t layer = 2; layer < 9; ++layer)
-        CHECK(same_bits(stack.skins(layer).sparse, stack.insides[layer]));
+        CHECK(stack.skins(layer).sparse == stack.insides[layer]);
 }
 
 TEST_CASE("skins 2: gaps of two layers that are narrow each and side by side are solid together") {
@@ -254,7 +229,7 @@ TEST_CASE("skins 5: what is not finite is solid and counted") {
     stack.outlines[7].push_back(FullCircle{{nan, 0}, 1, true});
     const LayerSkins skins = stack.skins(6);
     CHECK(skins.unresolved == 1);
-    CHECK(same_bits(skins.solid, stack.insides[6]));
+    CHECK(skins.solid == stack.insides[6]);
     CHECK(stack.skins(2).unresolved == 0);
     SkinRequest request = usual;
     request.width_mm = 0;
@@ -271,10 +246,10 @@ TEST_CASE("skins 6: outlines beyond the window do not matter") {
                     outlines[k] = SkinOutline();
             const LayerSkins one = stack.skins(layer);
             const LayerSkins other = skins_of(outlines, layer, stack.insides[layer], usual);
-            CHECK(same_bits(one.top, other.top));
-            CHECK(same_bits(one.bridge, other.bridge));
-            CHECK(same_bits(one.solid, other.solid));
-            CHECK(same_bits(one.sparse, other.sparse));
+            CHECK(one.top == other.top);
+            CHECK(one.bridge == other.bridge);
+            CHECK(one.solid == other.solid);
+            CHECK(one.sparse == other.sparse);
         }
     }
 }
