@@ -135,6 +135,8 @@ Result<std::vector<Point3>> printed_points(const std::string& step_path, double 
     options.profile.layer.height_mm = options.profile.layer.first_height_mm = layer_height_mm;
     // Walls all along the outline, however narrow the part.
     options.profile.perimeters.thin_walls = false;
+    // And outermost walls are told from others by their role.
+    options.profile.bridge.walls = false;
     Diagnostics found;
     auto model = slicer::load(step_path, options, found);
     if (!model) return model.error();

@@ -35,7 +35,6 @@ constexpr const char* prusa_settings = R"(perimeters = 3
 perimeter_generator = classic
 gap_fill_enabled = 1
 extra_perimeters = 0
-overhangs = 0
 thick_bridges = 0
 fill_density = 15%
 fill_pattern = grid

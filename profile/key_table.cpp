@@ -149,6 +149,7 @@ void add_fill(std::vector<Key>& keys) {
         .fraction("overlap", &Infill::overlap, part,
                   "How far fill reaches into the innermost wall, of the line's width");
     Section(keys, "bridge", &Profile::bridge)
+        .flag("walls", &Bridge::walls, "Print walls as bridges where they run over air")
         .fraction("flow", &Bridge::flow, flow, "Extrusion multiplier of bridges")
         .fraction("fan", &Bridge::fan, part, "Duty of the part's fan on bridges");
 }

@@ -100,6 +100,7 @@ struct Infill {
 };
 
 struct Bridge {
+    bool walls = true;  // are printed as bridges where they are over air
     double flow = 1;
     double fan = 1;
     bool operator==(const Bridge&) const = default;

@@ -19,9 +19,6 @@ namespace {
 // Of lines side by side over air, each held by the one before: what reaches out by more droops.
 constexpr double carried_lines = 4;
 
-// As those of SkinOutline.
-constexpr double rows_per_width = 2;
-
 struct AirBelow {
     std::size_t islands = 0;
     Contour first_island{};
@@ -40,7 +37,7 @@ public:
         : layer_(layer),
           below_(below),
           width_mm_(options.profile.skin.width_mm),
-          pitch_mm_(width_mm_ / rows_per_width),
+          pitch_mm_(SkinOutline::pitch_mm(width_mm_)),
           allowed_mm_(options.tolerance().unite_mm()) {}
 
     AirBelow found() {

@@ -7,6 +7,7 @@
 
 #include "kernel/contour/turned_round.h"
 #include "kernel/toolpath/layer_order.h"
+#include "slicer/overhang_walls.h"
 #include "slicer/styles.h"
 #include "slicer/support_order.h"
 #include "slicer/wipe.h"
@@ -47,6 +48,7 @@ public:
         : layer_(layer),
           profile_(options.profile),
           styles_(options.profile, layer.index, layer.span.height_mm()),
+          held_(layer.below ? HeldWalls::of(layer.outlined, *layer.below, options) : std::nullopt),
           encoder_(quantum, state()) {}
 
     Result<format::EncodedLayer> encode() {
@@ -240,9 +242,23 @@ private:
     void append_wall(const PrintMove& move) {
         const Strand wall = started_at(layer_.outlined.walls.strands[move.index], move.seam);
         travel(way_to(move), move.seam.point);
-        begin(wall_style(move.index));
-        append(wall, move.seam.point);
+        if (wipes()) keep(wipe_along(wall, move.seam.point, profile_.travel.wipe_mm));
+        if (held_) {
+            for (const WallStretch& stretch : held_->stretches(wall, move.seam.point))
+                append_stretch(stretch, wall_style(move.index));
+        } else {
+            begin(wall_style(move.index));
+            draw(wall);
+        }
         head_ = move.seam.point;
+    }
+
+    void append_stretch(const WallStretch& stretch, const format::PathStyle& held) {
+        if (stretch.over_air) encoder_.fan(0, profile_.bridge.fan);
+        begin(stretch.over_air ? styles_.of(Role::overhang_wall, stretch.strand.width_mm, 0, 1)
+                               : held);
+        draw(stretch.strand);
+        if (stretch.over_air) encoder_.fan(0, fan_);
     }
 
     void append_piece(const PrintMove& move) {
@@ -264,6 +280,10 @@ private:
 
     void append(const Strand& strand, const Point2& start) {
         if (wipes()) keep(wipe_along(strand, start, profile_.travel.wipe_mm));
+        draw(strand);
+    }
+
+    void draw(const Strand& strand) {
         if (const auto* circle = std::get_if<FullCircle>(&strand.path)) {
             const Point2 centre = circle->centre + shift_;
             encoder_.circle(centre.x(), centre.y(), circle->counter_clockwise);
@@ -319,6 +339,7 @@ private:
     const LayerToEncode& layer_;
     const profile::Profile& profile_;
     Styles styles_;
+    std::optional<HeldWalls> held_;  // none: no wall is over air
     const Travel straight_{.crosses = true};
     double fan_ = 0;
     bool retracted_ = false;

@@ -21,6 +21,7 @@ struct LayerToEncode {
     std::size_t index = 0;
     LayerSpan span;
     const OutlinedLayer& outlined;
+    const OutlinedLayer* below;  // null: it lies on the bed or a raft
     const LayerFill& fill;
     std::span<const PrintMove> moves;
     std::span<const Copy> copies;    // printed one after the other

@@ -17,7 +17,7 @@ bool is_wall(Role role) {
 }  // namespace
 
 bool is_bridge(Role role) {
-    return role == Role::bridge || role == Role::internal_bridge;
+    return role == Role::bridge || role == Role::internal_bridge || role == Role::overhang_wall;
 }
 
 double Styles::speed_mm_s(Role role, double length_mm) const {
@@ -38,6 +38,7 @@ double Styles::speed_mm_s(Role role, double length_mm) const {
             return speed.top_skin_mm_s;
         case Role::bridge:
         case Role::internal_bridge:
+        case Role::overhang_wall:
             return speed.bridge_mm_s;
         case Role::support:
         case Role::support_interface:
@@ -66,6 +67,7 @@ double Styles::acceleration_mm_s2(Role role) const {
             return acceleration.top_skin_mm_s2;
         case Role::bridge:
         case Role::internal_bridge:
+        case Role::overhang_wall:
             return acceleration.bridge_mm_s2;
         case Role::support:
         case Role::support_interface:

@@ -50,15 +50,6 @@ double ledge_mm(const LayerSpan& span, const Options& options) {
            skin_width_mm(options) / 2;
 }
 
-// Rows (RowCover, contract 3) that are shorter hold no disc of a ledge.
-bool may_be_flat(const SkinOutline& layer, const SkinOutline& below, double ledge_mm,
-                 double width_mm) {
-    constexpr double rows_per_width = 2;  // of SkinOutline
-    const double pitch_mm = width_mm / rows_per_width;
-    const double least_mm = std::sqrt(std::max(0.0, ledge_mm * ledge_mm - pitch_mm * pitch_mm));
-    return layer.rows().without(below.rows()).longest_mm() >= least_mm;
-}
-
 // The edges of one layer, by face.
 OverhangEdges edges_at(const Cutter& cutter, const LayerSpan& span,
                        const std::vector<bool>& is_blocked, const Options& options) {
@@ -174,7 +165,7 @@ void SupportPlan::find_overhangs(const Model& model, const Cutter& cutter,
             if (i <= first_) return Overhang{};
             const double ledge = ledge_mm(span_of(i), options);
             const bool flat =
-                may_be_flat(layers_[i].seen, layers_[i - 1].seen, ledge, skin_width_mm(options));
+                may_leave_bare(layers_[i].seen, layers_[i - 1].seen, skin_width_mm(options), ledge);
             return overhang_of(
                 layers_[i].outline, layers_[i - 1].outline, edges[i], edges[i - 1].leaning, flat,
                 {.ledge_mm = ledge,

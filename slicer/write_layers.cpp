@@ -100,16 +100,18 @@ PlannedLayer planned(std::size_t i, const Job& job) {
 TimedLayer encoded(std::size_t i, const Job& job, const PlannedLayer& planned,
                    std::span<const Copy> copies, bool begins_print, bool lifts) {
     TimedLayer made;
-    auto bytes = encode_layer({.index = i,
-                               .span = job.in.spans[i],
-                               .outlined = job.in.layers[i],
-                               .fill = planned.fill,
-                               .moves = planned.moves,
-                               .copies = copies,
-                               .skirt = begins_print ? planned.skirt : std::span<const Piece>(),
-                               .begins_print = begins_print,
-                               .lift_mm = lifts ? job.in.plate.lift_mm : 0},
-                              job.in.options, quantum_for(job.in.options.tolerance()));
+    auto bytes = encode_layer(
+        {.index = i,
+         .span = job.in.spans[i],
+         .outlined = job.in.layers[i],
+         .below = i > raft_layers(job.in.options.profile) ? &job.in.layers[i - 1] : nullptr,
+         .fill = planned.fill,
+         .moves = planned.moves,
+         .copies = copies,
+         .skirt = begins_print ? planned.skirt : std::span<const Piece>(),
+         .begins_print = begins_print,
+         .lift_mm = lifts ? job.in.plate.lift_mm : 0},
+        job.in.options, quantum_for(job.in.options.tolerance()));
     if (!bytes) {
         made.error = bytes.error();
         return made;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <tuple>
 
 #include "kernel/geometry/tolerance.h"
@@ -49,6 +50,28 @@ public:
         }
         if (inside) parts.push_back(part(knots_[first], knots_.back()));
         return parts;
+    }
+
+    CutPath cut() {
+        find_knots();
+        CutPath result{{path_.start, {}}};
+        std::size_t first = 0;
+        for (std::size_t i = 0; i + 1 < knots_.size(); ++i) {
+            const auto between = point_between(knots_[first].spot, knots_[i + 1].spot);
+            if (!between && i + 2 < knots_.size()) continue;
+            const bool inside = between ? region_.winding(*between) > 0
+                                        : result.inside.empty() || result.inside.back();
+            append(knots_[first], knots_[i + 1], result.path, &result.origin);
+            result.inside.resize(result.path.segments.size(), inside);
+            first = i + 1;
+        }
+        // Shorter than what is seen.
+        if (result.path.segments.empty()) {
+            const std::size_t count = path_.segments.size();
+            result = {path_, std::vector<bool>(count, true), std::vector<std::uint32_t>(count)};
+            std::iota(result.origin.begin(), result.origin.end(), 0u);
+        }
+        return result;
     }
 
 private:
@@ -128,14 +151,21 @@ private:
         PathPart part{{from.on_boundary ? from.place.point : path_.start, {}}, {}, {}};
         if (from.on_boundary) part.start = from.place;
         if (to.on_boundary) part.end = to.place;
-        const Point2 end = to.on_boundary ? to.place.point : path_.segments.back().end;
         part.path.segments.reserve(to.spot.segment - from.spot.segment + 1);
+        append(from, to, part.path);
+        return part;
+    }
+
+    // What lies between two knots; `origin` is told of which segments.
+    void append(const Knot& from, const Knot& to, Path& path,
+                std::vector<std::uint32_t>* origin = nullptr) const {
+        const Point2 end = to.on_boundary ? to.place.point : path_.segments.back().end;
         for (std::size_t i = from.spot.segment; i <= to.spot.segment; ++i) {
             const bool first = i == from.spot.segment, last = i == to.spot.segment;
             append(i, first ? from.spot.along_mm : 0,
-                   last ? std::optional(to.spot.along_mm) : std::nullopt, end, part.path);
+                   last ? std::optional(to.spot.along_mm) : std::nullopt, end, path);
+            if (origin) origin->resize(path.segments.size(), static_cast<std::uint32_t>(i));
         }
-        return part;
     }
 
     // A segment from a length on, up to another or, without one, to its end.
@@ -169,6 +199,11 @@ private:
 std::vector<PathPart> clipped(const Path& path, const Boundary& region) {
     if (path.segments.empty()) return {};
     return Clipper(path, region).parts();
+}
+
+CutPath cut_at(const Path& path, const Boundary& region) {
+    if (path.segments.empty()) return {path};
+    return Clipper(path, region).cut();
 }
 
 }  // namespace lyr

@@ -15,9 +15,8 @@
 namespace lyr {
 namespace {
 
-// Rows in a width. With two, a disc of a width has an interval of sqrt(3)/2 widths on one of them; a little less is asked
+// With two rows in a width, a disc of a width has an interval of sqrt(3)/2 widths on one of them; a little less is asked
 // for, because of round-off.
-constexpr double rows_per_width = 2;
 constexpr double wide_share = 0.86;
 
 // Of a width: what rows find bare because of one more outline, in shorter intervals only, is not worth an operand.
@@ -68,7 +67,7 @@ std::vector<Bare> bare_rows(std::span<const SkinOutline> outlines, std::size_t l
         if (is_new(k)) others.push_back(k);
     std::vector<Bare> result;
     if (others.empty()) return result;
-    const RowCover rows(inside, request.width_mm / rows_per_width);
+    const RowCover rows(inside, SkinOutline::pitch_mm(request.width_mm));
     for (const std::size_t other : others)
         result.push_back({other, rows.without(outlines[other].rows())});
     return result;
@@ -302,7 +301,14 @@ std::optional<LayerSkins> settled(std::span<const SkinOutline> outlines, std::si
 
 SkinOutline::SkinOutline(Region region, double width_mm)
     : region_(region), finite_(width_mm > 0 && all_finite(region)) {
-    if (finite_) rows_ = RowCover(region, width_mm / rows_per_width);
+    if (finite_) rows_ = RowCover(region, pitch_mm(width_mm));
+}
+
+bool may_leave_bare(const SkinOutline& layer, const SkinOutline& other, double width_mm,
+                    double diameter_mm) {
+    const double pitch_mm = SkinOutline::pitch_mm(width_mm);
+    const double longest_mm = layer.rows().without(other.rows()).longest_mm();
+    return longest_mm * longest_mm >= diameter_mm * diameter_mm - pitch_mm * pitch_mm;
 }
 
 LayerSkins skins_of(std::span<const SkinOutline> outlines, std::size_t layer, Region inside,

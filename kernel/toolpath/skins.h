@@ -44,6 +44,9 @@ struct SkinRequest {
 // A layer's outline as the layers around it see it.
 class SkinOutline {
 public:
+    // Of the rows, for lines of a width.
+    static double pitch_mm(double width_mm) { return width_mm / 2; }
+
     SkinOutline() = default;
     // The contours have the material on the left, wind around no point more than once, and outlive this.
     SkinOutline(Region region, double width_mm);
@@ -58,10 +61,14 @@ private:
     bool finite_ = true;
 };
 
+// Whether a disc of this diameter may lie in a layer and not in another (RowCover, contract 3); both were made for the width.
+bool may_leave_bare(const SkinOutline& layer, const SkinOutline& other, double width_mm,
+                    double diameter_mm);
+
 struct LayerSkins {
     std::vector<Contour> top{}, bottom{}, bridge{}, solid{}, sparse{};
     std::vector<Contour> internal_bridge{};  // none from skins_of(): see internal_bridges.h
-    std::size_t slivers = 0;  // left out
+    std::size_t slivers = 0;                 // left out
     std::size_t unresolved = 0;
 };
 

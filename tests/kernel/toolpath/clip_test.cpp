@@ -112,6 +112,49 @@ TEST_CASE("clipped: a path that is wholly inside is itself, one outside is nothi
     CHECK(clipped(path, Boundary(Contours{})).empty());
 }
 
+TEST_CASE("cut_at 4: all of the path, each segment in the region or not") {
+    Random random(7);
+    for (int i = 0; i < 200; ++i) {
+        CAPTURE(i);
+        const double size = random.within(2, 30);
+        const Contours region = random_region(random, {0, 0}, size);
+        const Path path = random_path(random, size);
+        const CutPath cut = cut_at(path, Boundary(region));
+        REQUIRE(cut.inside.size() == cut.path.segments.size());
+        REQUIRE(cut.origin.size() == cut.path.segments.size());
+        CHECK(cut.path.start == path.start);
+        CHECK(end_of(cut.path) == end_of(path));
+        CHECK(length_mm(Contour(cut.path)) == doctest::Approx(length_mm(Contour(path))));
+        CHECK(std::is_sorted(cut.origin.begin(), cut.origin.end()));
+        Point2 from = cut.path.start;
+        for (std::size_t k = 0; k < cut.inside.size(); ++k) {
+            const Segment& segment = cut.path.segments[k];
+            const Segment& of = path.segments[cut.origin[k]];
+            const Point2 begin =
+                cut.origin[k] == 0 ? path.start : path.segments[cut.origin[k] - 1].end;
+            for (const double share : {0.1, 0.5, 0.9}) {
+                const Point2 at = point_at(from, segment, share);
+                CHECK(distance_mm(begin, of, at) < 1e-6);
+                if (distance_to(region, at) > 1e-6)
+                    CHECK(cut.inside[k] == (winding(region, at) > 0));
+            }
+            from = segment.end;
+        }
+    }
+}
+
+TEST_CASE("cut_at 4: what crosses nothing is as it was, and nothing stays nothing") {
+    const Path path{{-1, -1}, {{{2, 0}, 0.3}, {{3, 3}}}};
+    for (const double size : {5.0, 0.1}) {
+        const CutPath cut = cut_at(
+            path, Boundary(Contours{rectangle(-size - 6, -size, size - 6 + 6 * (size > 1), size)}));
+        CHECK(Contour(cut.path) == Contour(path));
+        CHECK(cut.inside == std::vector<bool>(2, size > 1));
+    }
+    CHECK(cut_at(Path{{0, 0}, {}}, Boundary(Contours{})).path.segments.empty());
+    CHECK(cut_at(Path{{0, 0}, {{{0, 1e-9}}}}, Boundary(Contours{})).path.segments.size() == 1);
+}
+
 TEST_CASE("clipped 1: passing corners and touching circles cuts nothing off") {
     const Boundary diamond(Contours{Path{{0, -3}, {{{3, 0}}, {{0, 3}}, {{-3, 0}}, {{0, -3}}}}});
     for (double angle = 0; angle < 6; angle += 0.37) {
