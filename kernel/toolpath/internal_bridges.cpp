@@ -73,10 +73,11 @@ bool divide(LayerSkins& skins, Region bridges, const SkinRequest& request) {
     return true;
 }
 
-// Contours that an operation leaves as they were are so bit for bit.
-bool is_among(const Contour& contour, Region before) {
-    return std::any_of(before.begin(), before.end(), [&](const Contour& other) {
-        return start_of(other) == start_of(contour) && area_mm2(other) == area_mm2(contour);
+// Contours that an operation leaves as they were are so bit for bit. Around a bridge a ring may be left, with the outer
+// contour of before.
+bool is_among(Region part, Region before) {
+    return std::all_of(part.begin(), part.end(), [&](const Contour& contour) {
+        return std::find(before.begin(), before.end(), contour) != before.end();
     });
 }
 
@@ -84,8 +85,8 @@ bool is_among(const Contour& contour, Region before) {
 bool take_narrow(Contours& region, Region before, LayerSkins& skins, const SkinRequest& request) {
     Contours narrow, wide;
     for (const Contours& part : parts_of(region)) {
-        const bool is_narrow = 2 * area_mm2(part) < request.width_mm * length_mm(part) &&
-                               !is_among(part.front(), before);
+        const bool is_narrow =
+            2 * area_mm2(part) < request.width_mm * length_mm(part) && !is_among(part, before);
         Contours& place = is_narrow ? narrow : wide;
         place.insert(place.end(), part.begin(), part.end());
     }

@@ -286,12 +286,23 @@ private:
     }
     double tip_reach_mm() const { return 1.25 * request_.spacing_mm; }
 
-    // What a wall below cuts off from a branch does not stand on the wall.
+    // What a wall below cuts off from a branch does not stand on the wall. Roofs reach out from the tips that carry them.
     void keep_on_bed() {
-        for (std::size_t i = 1; i < count_; ++i)
-            result_.layers[i] =
-                changed(i, result_.layers[i], grown(i, result_.layers[i - 1], step_mm(i)),
-                        Operation::intersect);
+        for (std::size_t i = 1; i < count_; ++i) {
+            const Contours beside = grown(i, result_.layers[i - 1], step_mm(i));
+            std::vector<Region> held = roofs_at(i);
+            held.push_back(beside);
+            result_.layers[i] = changed(i, result_.layers[i], settled(i, united(held, allowed_mm_)),
+                                        Operation::intersect);
+        }
+    }
+
+    std::vector<Region> roofs_at(std::size_t i) const {
+        std::vector<Region> roofs;
+        const std::size_t end = std::min(begin_.size() - i, request_.support.interface_layers) + i;
+        for (std::size_t k = i; k < end; ++k)
+            for (const std::size_t above : begin_[k]) roofs.push_back(roofs_[above]);
+        return roofs;
     }
 
     // Where no tip is wanted, it would lie on air.
@@ -328,10 +339,8 @@ private:
         std::vector<Contours> parts;
         for (const Branch& branch : branches_)
             parts.push_back({FullCircle{branch.at, branch.radius_mm, true}});
-        std::vector<Region> regions(parts.begin(), parts.end());
-        const std::size_t end = std::min(begin_.size() - i, request_.support.interface_layers) + i;
-        for (std::size_t k = i; k < end; ++k)
-            for (const std::size_t above : begin_[k]) regions.push_back(roofs_[above]);
+        std::vector<Region> regions = roofs_at(i);
+        regions.insert(regions.end(), parts.begin(), parts.end());
         if (regions.empty()) return;
         const Contours all = settled(i, united(regions, allowed_mm_));
         result_.layers[i] = rooms_[i].clear.empty()

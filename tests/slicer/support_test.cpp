@@ -288,6 +288,19 @@ TEST_CASE(
     }
 }
 
+TEST_CASE("support_tree: roofs of trees that stand on the bed anyway were cut down to their tips") {
+    for (const Model& model : {table(), funnel(65)}) {
+        Options options = tree();
+        const double volume = Supported(model, options).volume_mm3();
+        options.profile.support.on_bed_only = true;
+        const Supported s(model, options);
+        CHECK(s.volume_mm3() == doctest::Approx(volume).epsilon(0.01));
+        CHECK(s.diagnostics.empty());
+        options.profile.support.interface_layers = 0;
+        CHECK(Supported(model, options).volume_mm3() < 0.9 * volume);
+    }
+}
+
 TEST_CASE("support_tree 2, 4: tips are near to all that hangs over, and branches are circles") {
     for (const Model& model : {table(), shelf(), funnel(65)}) {
         Options options = tree();

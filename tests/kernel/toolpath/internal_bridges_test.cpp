@@ -6,6 +6,7 @@
 
 #include "kernel/region/regions.h"
 #include "kernel/toolpath/bridges.h"
+#include "kernel/toolpath/islands.h"
 #include "kernel/toolpath/offset.h"
 #include "kernel/toolpath/stacks.h"
 
@@ -93,6 +94,16 @@ void check_layers(const std::vector<Bridged>& layers, Random& random, int points
             check_point(layers[i], {random.within(box.min().x() - 1, box.max().x() + 1),
                                     random.within(box.min().y() - 1, box.max().y() + 1)});
     }
+}
+
+// A frustum with these radii at its bottom and its top.
+std::vector<Contours> cone(double bottom_mm, double top_mm, int layers) {
+    std::vector<Contours> result;
+    for (int i = 0; i < layers; ++i) {
+        const double radius = bottom_mm + (top_mm - bottom_mm) * (i + 0.5) / layers;
+        result.push_back({FullCircle{{3, 1}, radius, true}});
+    }
+    return result;
 }
 
 std::vector<Chord> lines_along_x(double pitch_mm, const Motion& motion) {
@@ -242,4 +253,30 @@ TEST_CASE("bridge 5: chords of lines and arcs are as long as these") {
     REQUIRE(rows.size() == 2);
     CHECK((rows[1].from - Point2(-1.5, 1)).norm() < 1e-12);
     CHECK((rows[1].to - Point2(-1.5, 4)).norm() < 1e-12);
+}
+
+TEST_CASE(
+    "a ring too narrow for a line was left between walls and bridge, as its outer edge was not "
+    "new") {
+    std::size_t bridges = 0;
+    for (const double top_mm : {2.0, 3.0, 5.0, 8.0, 11.0}) {
+        for (const int layers : {20, 31, 44}) {
+            for (const Bridged& layer : bridged(cone(16, top_mm, layers))) {
+                bridges += !layer.after.internal_bridge.empty();
+                if (layer.after.internal_bridge.empty()) continue;
+                for (const Contours* after : {&layer.after.solid, &layer.after.top}) {
+                    const Contours& before =
+                        after == &layer.after.solid ? layer.before.solid : layer.before.top;
+                    for (const Contours& part : parts_of(*after)) {
+                        const bool is_old =
+                            std::all_of(part.begin(), part.end(), [&](const Contour& c) {
+                                return std::find(before.begin(), before.end(), c) != before.end();
+                            });
+                        CHECK((is_old || 2 * total_area(part) >= width_mm * total_length(part)));
+                    }
+                }
+            }
+        }
+    }
+    CHECK(bridges > 0);
 }
