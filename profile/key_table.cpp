@@ -221,6 +221,8 @@ void add_travel(std::vector<Key>& keys) {
                    [](Profile& p) { p.travel.unretract_speed_mm_s = p.travel.retract_speed_mm_s; })
         .number("retract_min_travel", &Travel::retract_min_travel_mm, mm, {0, 1000},
                 "Shorter travels do without")
+        .number("retract_inside", &Travel::retract_inside_mm, mm, {0, 1e5},
+                "Travels that stay inside the part retract from this length on; 0: none does")
         .number("wipe", &Travel::wipe_mm, mm, {0, 100},
                 "How far the nozzle goes back along what it printed while it retracts; 0: not")
         .fraction(

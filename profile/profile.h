@@ -162,6 +162,7 @@ struct Travel {
     double retract_speed_mm_s = 35;
     double unretract_speed_mm_s = 35;
     double retract_min_travel_mm = 2;
+    double retract_inside_mm = 30;   // travels that cross nothing; 0: never
     double wipe_mm = 0;              // back along what was just printed; 0: none
     double retract_before_wipe = 0;  // share of a retraction
     double z_hop_mm = 0;

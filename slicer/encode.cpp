@@ -7,6 +7,7 @@
 
 #include "kernel/contour/turned_round.h"
 #include "kernel/toolpath/layer_order.h"
+#include "slicer/cooling.h"
 #include "slicer/overhang_walls.h"
 #include "slicer/styles.h"
 #include "slicer/support_order.h"
@@ -133,28 +134,30 @@ private:
         return state;
     }
 
-    // What the layer takes at its speeds, without accelerations: it takes no less.
-    double least_time_s() const {
-        double time_s = 0;
+    // At their own speeds, of all copies.
+    std::vector<Timed> all_pieces() const {
+        std::vector<Timed> pieces;
+        const auto copies = static_cast<double>(layer_.copies.size());
         const auto add = [&](const format::PathStyle& style, double length) {
-            time_s += length / style.speed_mm_s;
+            pieces.push_back({copies * length, style.speed_mm_s});
         };
         const Walls& walls = layer_.outlined.walls;
         for (std::size_t i = 0; i < walls.strands.size(); ++i)
             add(wall_style(i), lyr::length_mm(walls.strands[i].path));
         for (const Piece& piece : layer_.fill.pieces) add(piece_style(piece), length_mm(piece));
-        return time_s * static_cast<double>(layer_.copies.size());
+        return pieces;
     }
 
     // The quicker a layer, the more fan; those that are too quick are slowed down (docs/profiles.md, fan).
     void slow_down_for_cooling() {
         const profile::Fan& fan = profile_.fan;
-        const double time_s = least_time_s();
-        const double ramp_s = fan.ramp_time_s - fan.min_layer_time_s;
-        const double share = ramp_s > 0 ? std::clamp((fan.ramp_time_s - time_s) / ramp_s, 0.0, 1.0)
-                                        : (time_s < fan.min_layer_time_s ? 1.0 : 0.0);
+        const std::vector<Timed> pieces = all_pieces();
+        const double own_s = time_s(pieces), ramp_s = fan.ramp_time_s - fan.min_layer_time_s;
+        const double share = ramp_s > 0 ? std::clamp((fan.ramp_time_s - own_s) / ramp_s, 0.0, 1.0)
+                                        : (own_s < fan.min_layer_time_s ? 1.0 : 0.0);
         fan_ = layer_.index < fan.off_layers ? 0 : fan.min + share * (fan.max - fan.min);
-        if (time_s < fan.min_layer_time_s) styles_.slow_down(time_s / fan.min_layer_time_s);
+        if (own_s < fan.min_layer_time_s)
+            styles_.slow_down(slowing(pieces, fan.min_layer_time_s, fan.min_speed_mm_s));
     }
 
     static double width_of(const Strand& strand) {
@@ -203,7 +206,9 @@ private:
         length += (to - at).norm();
         const bool crosses = way.crosses || !profile_.travel.avoid_crossing;
         const bool is_long = length >= profile_.travel.retract_min_travel_mm;
-        const bool draws_back = retracts() && !retracted_ && crosses && (is_long || enters);
+        const double inside_mm = profile_.travel.retract_inside_mm;
+        const bool needs = crosses ? is_long || enters : inside_mm > 0 && length >= inside_mm;
+        const bool draws_back = retracts() && !retracted_ && needs;
         const double hop_mm = draws_back ? profile_.travel.z_hop_mm : 0;
         const Point2 lift = draws_back ? draw_back().value_or(from) : from;
         const double z_mm = layer_.span.top_mm;
@@ -373,7 +378,10 @@ std::vector<PrintMove> order_layer(const OutlinedLayer& outlined, const LayerFil
     std::vector<OpenPiece> pieces;
     for (const Piece& piece : fill.pieces) pieces.push_back(ends_of(piece));
     std::optional<Detours> detours;
-    if (options.profile.travel.avoid_crossing) detours.emplace(inner_region(walls), allowed_mm);
+    // A line's width from the outermost wall's middle, so that what drips is not seen.
+    if (options.profile.travel.avoid_crossing)
+        detours.emplace(inner_region(walls), allowed_mm, Detours::default_extra_mm,
+                        options.profile.perimeters.width_mm);
     const auto support = std::span<const OpenPiece>(pieces).first(fill.support);
     std::vector<PrintMove> moves = support_order(support, detours ? outline : Region(), allowed_mm);
     const bool outer_first = options.profile.perimeters.first == profile::WallOrder::outer;

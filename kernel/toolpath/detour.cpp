@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "base/constants.h"
 
@@ -48,8 +49,11 @@ double along_mm(const BoundaryPiece& piece, const Point2& point) {
 
 }  // namespace
 
-Detours::Detours(Region inside, double allowed_mm, double most_extra_mm)
-    : boundary_(inside), allowed_mm_(allowed_mm), most_extra_mm_(most_extra_mm) {
+Detours::Detours(Region inside, double allowed_mm, double most_extra_mm, double clear_mm)
+    : boundary_(inside),
+      allowed_mm_(allowed_mm),
+      most_extra_mm_(most_extra_mm),
+      clear_mm_(clear_mm) {
     outlines_.resize(inside.size());
     piece_at_mm_.reserve(boundary_.pieces().size());
     for_neighbours(boundary_.pieces(),
@@ -148,7 +152,37 @@ public:
         }
     }
 
+    // Bends farther from what they go around, all of them as far, where that meets nothing else; or else one by one.
+    void clear(Polyline& line, double most_mm) const {
+        const std::size_t last = line.size() - 1;
+        if (last < 2) return;
+        for (double by_mm = detours_.clear_mm_; by_mm > 2 * detours_.allowed_mm_; by_mm /= 2)
+            if (clear(line, 1, last, by_mm, most_mm)) return;
+        for (std::size_t i = 1; i < last; ++i)
+            for (double by_mm = detours_.clear_mm_; by_mm > 2 * detours_.allowed_mm_; by_mm /= 2)
+                if (clear(line, i, i + 1, by_mm, most_mm)) break;
+    }
+
 private:
+    // Bends [first, last).
+    bool clear(Polyline& line, std::size_t first, std::size_t last, double by_mm,
+               double most_mm) const {
+        Polyline moved = line;
+        for (std::size_t i = first; i < last; ++i) {
+            const Vector2 aside =
+                (line[i] - line[i - 1]).normalized() - (line[i + 1] - line[i]).normalized();
+            moved[i] += by_mm * aside.normalized();
+        }
+        if (length_of(moved) > most_mm) return false;
+        std::vector<BoundaryCrossing> crossings;
+        for (std::size_t i = first; i <= last; ++i) {
+            detours_.boundary_.crossings(moved[i - 1], moved[i], crossings);
+            if (!crossings.empty()) return false;
+        }
+        line = std::move(moved);
+        return true;
+    }
+
     // A way that is not shorter than this share of another is as long.
     static constexpr double least_gain = 1 - 1e-9;
 
@@ -227,8 +261,10 @@ Travel Detours::way(const Point2& from, const Point2& to) const {
     if (boundary_.winding(start) <= 0 || boundary_.winding(end) <= 0) return {{}, true};
     Search search(*this);
     Polyline line{start};
-    if (!search.append(end, (end - start).norm() + most_extra_mm_, 0, line)) return {{}, true};
+    const double most_mm = (end - start).norm() + most_extra_mm_;
+    if (!search.append(end, most_mm, 0, line)) return {{}, true};
     search.tighten(line);
+    search.clear(line, most_mm);
     return {{line.begin() + 1, line.end() - 1}, false};
 }
 

@@ -4,8 +4,9 @@
 //
 // Contract
 //  1. Unless a way `crosses`, no point of it is farther than `allowed_mm` outside the region, apart from ends that are.
-//  2. It is straight where that is inside. Otherwise it bends around corners and arcs of the boundary, about
-//     twice `allowed_mm` from them, and is no more than `most_extra_mm` longer than the straight way.
+//  2. It is straight where that is inside. Otherwise it bends around corners and arcs of the boundary, up to `clear_mm` from
+//     them where there is room, else about twice `allowed_mm`, and is no more than `most_extra_mm` longer than the straight
+//     way.
 //  3. It is short, not always the shortest (docs/algorithms/order.md has figures). Where no such way is found (the ends lie
 //     in separate parts, or outside, or the work is at its bound), it goes straight and `crosses` says so.
 //
@@ -30,7 +31,8 @@ public:
     // What a retraction costs, in travel: a longer detour is not worth it.
     static constexpr double default_extra_mm = 20;
 
-    Detours(Region inside, double allowed_mm, double most_extra_mm = default_extra_mm);
+    Detours(Region inside, double allowed_mm, double most_extra_mm = default_extra_mm,
+            double clear_mm = 0);
 
     Travel way(const Point2& from, const Point2& to) const;
 
@@ -50,7 +52,7 @@ private:
     Point2 moved_inside(Point2 point) const;
 
     Boundary boundary_;
-    double allowed_mm_, most_extra_mm_;
+    double allowed_mm_, most_extra_mm_, clear_mm_;
     std::vector<double> piece_at_mm_;  // along its contour
     std::vector<Outline> outlines_;    // by contour
 };

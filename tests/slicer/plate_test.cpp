@@ -408,6 +408,33 @@ TEST_CASE(
     CHECK(results.size() == 1);
 }
 
+TEST_CASE("travels inside of a part never retracted, however long") {
+    std::map<double, std::size_t> retractions;
+    for (const double inside_mm : {0.0, 5.0, 30.0}) {
+        Options options = thick_layers();
+        options.profile.travel.retract_inside_mm = inside_mm;
+        printed("cuboid.step", "inside.lyr", options);
+        auto reader = format::Reader::open(folder + "inside.lyr");
+        REQUIRE(reader);
+        double depth_mm = 0, travelled_mm = 0;
+        while (const format::Operation* operation = reader->read()) {
+            if (const auto* retract = std::get_if<format::Retract>(operation)) {
+                retractions[inside_mm] += retract->depth_mm > depth_mm;
+                depth_mm = retract->depth_mm;
+            }
+            const auto* travel = std::get_if<format::Travel>(operation);
+            if (!travel) travelled_mm = 0;
+            if (!travel || depth_mm > 0) continue;
+            const double mm = reader->header().quantum.nm * 1e-6;
+            travelled_mm += mm * std::hypot(static_cast<double>(travel->to.x - travel->from.x),
+                                            static_cast<double>(travel->to.y - travel->from.y));
+            if (inside_mm > 0) CHECK(travelled_mm < inside_mm + 1e-3);
+        }
+    }
+    CHECK(retractions[5.0] > retractions[30.0]);
+    CHECK(retractions[30.0] >= retractions[0.0]);
+}
+
 TEST_CASE(
     "encode: the way from a brim to the walls retracts, also where the bed's origin is inside") {
     Options options = thick_layers();

@@ -232,6 +232,33 @@ TEST_CASE("detour 2: no longer than what it may take more") {
     CHECK(crossing > 20);
 }
 
+TEST_CASE("detour 2: ways ran on the walls that they go around, with room beside them") {
+    constexpr double clear_mm = 0.8;
+    Random random(6);
+    std::size_t bends = 0, clear = 0;
+    for (int i = 0; i < 12; ++i) {
+        const Contours region = plate(random, 10, 60);
+        const Boundary boundary(region);
+        for (const double extra : {2.0, 20.0}) {
+            const Detours detours(region, allowed_mm, extra, clear_mm);
+            const Detours tight(region, allowed_mm, extra);
+            for (int k = 0; k < 25; ++k) {
+                const Point2 from = point_inside(region, random), to = point_inside(region, random);
+                const Travel travel = detours.way(from, to);
+                CHECK(travel.crosses == tight.way(from, to).crosses);
+                if (!travel.crosses) check_inside(region, from, travel, to);
+                CHECK(length_of(from, travel, to) <= (to - from).norm() + extra + 1e-9);
+                for (const Point2& bend : travel.via) {
+                    ++bends;
+                    clear += boundary.distance_mm(bend, clear_mm) > clear_mm / 2;
+                }
+            }
+        }
+    }
+    CHECK(bends > 200);
+    CHECK(clear > bends * 9 / 10);
+}
+
 TEST_CASE("detour: turned and mirrored regions have ways as long") {
     Random random(4);
     for (int i = 0; i < 10; ++i) {
