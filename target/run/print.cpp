@@ -399,6 +399,7 @@ Result<PrintReport> print(const PrintJob& job, gpio::GpioChip& chip, gpio::Clock
     if (!prepared) return prepared.error();
     if (!heating && !job.no_heat && !prepared->inspection.demands.hottest.empty())
         return Diagnostic{Severity::error, ExitStatus::internal, "no heaters were opened", {}};
+    if (job.checked) job.checked();
     return run(job, *prepared, chip, clock, {heating, buttons});
 }
 
@@ -408,6 +409,7 @@ Result<PrintReport> print(const PrintJob& job) {
     if (!prepared) return prepared.error();
     const Result<std::vector<gpio::LineRequest>> requests = line_requests(job.printer);
     if (!requests) return requests.error();
+    if (job.checked) job.checked();
     // From here on lines are held: one that comes between homing and printing must not be lost, nor end the program.
     const StopSignals signals;
     const Result<std::unique_ptr<gpio::GpioChip>> chip = gpio::open_gpiod_chip(*requests);
