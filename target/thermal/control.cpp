@@ -65,7 +65,6 @@ void HeatControl::sample(Channel& channel, double time_s) {
     const Result<double> raw = channel.port.sensor->read();
     Sample sample;
     sample.time_s = time_s;
-    sample.is_converter = settings.sensor.kind != config::SensorKind::celsius;
     sample.target_c = status.target_c;
     sample.power = status.power;
     if (raw) {
@@ -106,8 +105,10 @@ void HeatControl::check_extrusion(const Channel& channel) {
 void HeatControl::control(Channel& channel, double time_s) {
     HeaterStatus& status = channel.status;
     const bool tunes = relay_ && relay_number_ == channel.port.number;
+    const config::Heater& settings = channel.port.settings;
     status.power = tunes ? relay_->update(time_s, status.temperature_c)
-                         : channel.pid.update(status.target_c, status.temperature_c);
+                         : asking_power(channel.pid.update(status.target_c, status.temperature_c),
+                                        settings.max_power, settings.guard, channel.guard);
     // While its sensor gives bad figures, a heater stays off.
     if (channel.guard.bad > 0) status.power = 0;
     status.on_s += status.power * tick_s;
