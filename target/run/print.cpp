@@ -370,9 +370,13 @@ Result<PrintReport> run(const PrintJob& job, const Prepared& prepared, gpio::Gpi
         tending.join();
     }
     const Status status = status_of(shared, life, running.outcome);
-    if (journal && (status || life.is_cancelled())) journal->remove();
+    const bool is_known = running.outcome.executed.ok() && shared.stop_requests < 2;
+    if (journal && (status || life.is_cancelled()))
+        journal->remove();
+    else if (is_known)
+        life.note_rest();
     if (journal) journal->finish();
-    life.end(status, running.outcome.executed.ok() && shared.stop_requests < 2);
+    life.end(status, is_known);
     if (!status) return status.error();
     if (life.journal_error()) report.warnings.push_back(*life.journal_error());
     report_on(running.executor, running.traced, report);
