@@ -93,12 +93,12 @@ void HeatControl::check_extrusion(const Channel& channel) {
     const double limit_c = std::min(least_c, status.target_c - settings.guard.stray_c);
     if (!may_push || status.temperature_c >= limit_c) return;
     char text[300];
-    std::snprintf(
-        text, sizeof text,
-        "heater tool: %.1f °C, colder than min_extrude_c = %g, though it had reached %g °C: "
-        "look at the heater's wires and supply, and at draughts; all heaters are off and "
-        "stay so until lyrrun is started again",
-        status.temperature_c, least_c, status.target_c);
+    std::snprintf(text, sizeof text,
+                  "heater tool: %.1f °C, colder than heater.tool.min_extrude_c = %g, though it had "
+                  "reached %g °C: "
+                  "look at the heater's wires and supply, and at draughts; all heaters are off and "
+                  "stay so until lyrrun is started again",
+                  status.temperature_c, least_c, status.target_c);
     stop({GuardKind::falling, text});
 }
 

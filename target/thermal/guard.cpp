@@ -40,11 +40,12 @@ std::string bad_text(GuardKind kind, const GuardLimits& limits, const Sample& sa
             return formatted("the sensor reads %g, nothing: a short circuit of its wires", raw);
         case GuardKind::too_cold:
             return formatted(
-                "%.1f °C is below range_c, which begins at %g: look at the sensor and its kind", t,
-                limits.low_c);
+                "%.1f °C is below its range_c, which begins at %g: look at the sensor and its kind",
+                t, limits.low_c);
         case GuardKind::over_temperature:
             return formatted(
-                "%.1f °C is above range_c, which ends at %g: look at the heater's switch, and at "
+                "%.1f °C is above its range_c, which ends at %g: look at the heater's switch, and "
+                "at "
                 "the sensor and its kind",
                 t, limits.high_c);
         default:
@@ -164,10 +165,11 @@ std::optional<Trip> check_frozen(const std::string& heater, const GuardLimits& l
     if (sample.time_s - state.same_since_s < limits.frozen_time_s) return std::nullopt;
     return trip(
         GuardKind::frozen, heater,
-        formatted("the sensor has read exactly %g for %g s, whatever its heater was given: its "
-                  "converter is dead, or the kernel's driver is; raise guard.frozen_time_s if the "
-                  "heater is too weak to move it by one step in that time",
-                  *sample.raw, limits.frozen_time_s));
+        formatted(
+            "the sensor has read exactly %g for %g s, whatever its heater was given: its "
+            "converter is dead, or the kernel's driver is; raise its guard.frozen_time_s if the "
+            "heater is too weak to move it by one step in that time",
+            *sample.raw, limits.frozen_time_s));
 }
 
 }  // namespace
