@@ -16,6 +16,7 @@
 #include <system_error>
 #include <vector>
 
+#include "apps/signal_watch.h"
 #include "base/replace_file.h"
 #include "base/text.h"
 
@@ -33,6 +34,7 @@ int fail(const Program& program, const Diagnostic& diagnostic) {
     Diagnostic shown = diagnostic;
     if (shown.status == ExitStatus::usage)
         shown.message += std::string(" (") + program.name + " --help explains)";
+    if (shown.status == ExitStatus::stopped) end_soon(shown.status);
     show(program, shown);
     return static_cast<int>(shown.status);
 }

@@ -276,7 +276,8 @@ Status print(const Arguments& arguments, const config::Printer& printer) {
         };
     if (!arguments.dry_run) job.journal = run::journal_path(printer, arguments.lyr_path);
     job.control = &control;
-    job.begun = [&] { show(program, server->start()); };
+    job.checked = [&] { show(program, server->notes()); };
+    job.begun = [&] { server->start(); };
     const Result<run::PrintReport> report = arguments.dry_run ? run::dry_run(job) : run::print(job);
     line.clear();
     if (!report) return report.error();

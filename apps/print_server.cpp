@@ -63,16 +63,17 @@ Result<PrintServer> PrintServer::open(const std::string& socket, const config::P
     return PrintServer(std::move(work));
 }
 
-Diagnostics PrintServer::start() {
-    if (work_->listener) {
-        work_->server.emplace(std::move(*work_->listener), work_->dispatcher);
-        return {};
-    }
+Diagnostics PrintServer::notes() const {
+    if (work_->listener) return {};
     return {{Severity::note,
              ExitStatus::ok,
              "lyrctl cannot reach this print: there is no folder for its socket; --socket makes "
              "one elsewhere",
              {}}};
+}
+
+void PrintServer::start() {
+    if (work_->listener) work_->server.emplace(std::move(*work_->listener), work_->dispatcher);
 }
 
 }  // namespace lyr::command_line

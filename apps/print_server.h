@@ -24,8 +24,10 @@ public:
     PrintServer& operator=(PrintServer&&) = delete;
     ~PrintServer();
 
-    // On a thread of its own. Returns what the user must know.
-    Diagnostics start();
+    // What the user must know before start().
+    Diagnostics notes() const;
+    // On a thread of its own.
+    void start();
 
 private:
     struct Work;

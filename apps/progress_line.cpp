@@ -6,7 +6,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <cstdio>
+#include <cstring>
 
 namespace lyr::command_line {
 namespace {
@@ -37,8 +37,10 @@ void ProgressLine::show(const std::string& text) {
 }
 
 void ProgressLine::clear() {
-    if (drawn_) std::fputs(eraser, stderr);
+    if (!drawn_) return;
     drawn_ = false;
+    // Where it does not take it, what comes next stands behind the line.
+    [[maybe_unused]] const ssize_t taken = ::write(terminal_, eraser, std::strlen(eraser));
 }
 
 const char* line_eraser() {

@@ -4,6 +4,7 @@
 
 #include <pthread.h>
 
+#include <chrono>
 #include <cstdio>
 
 #include "apps/progress_line.h"
@@ -23,6 +24,7 @@ void watch(const std::stop_token& needed_no_more, const sigset_t& signals, const
         if (needed_no_more.stop_requested() || sigwait(&signals, &signal) != 0) return;
     }
     const Diagnostic stopped{Severity::error, ExitStatus::stopped, "stopped on request", {}};
+    end_soon(stopped.status);
     std::fprintf(stderr, "%s%s: %s\n", line_eraser(), program, to_string(stopped).c_str());
     end_process(stopped.status);
 }
@@ -46,6 +48,14 @@ SignalWatch::SignalWatch(const char* program) {
 SignalWatch::~SignalWatch() {
     thread_.request_stop();
     pthread_kill(thread_.native_handle(), wake_signal());
+}
+
+void end_soon(ExitStatus status) {
+    static constexpr std::chrono::milliseconds patience{500};
+    std::thread([status] {
+        std::this_thread::sleep_for(patience);
+        end_process(status);
+    }).detach();
 }
 
 }  // namespace lyr::command_line

@@ -3,13 +3,15 @@
 //
 // Contract
 //  1. The signals are blocked in the calling thread and all that it starts, from here to the end of the program; a
-//     thread waits for them until destruction.
+//     thread waits for them until destruction. What it says is said within half a second or not at all.
 //  2. Signals that were ignored when the program began stay so: nohup(1) means what it says.
 
 #pragma once
 
 #include <csignal>
 #include <thread>
+
+#include "base/diagnostic.h"
 
 namespace lyr::command_line {
 
@@ -24,5 +26,9 @@ private:
     sigset_t signals_;
     std::jthread thread_;
 };
+
+// Ends the program with this status in half a second, if nothing else has ended it by then: a terminal that was stopped, or
+// a pipe that nobody reads, would keep the last message of one that was asked to stop for as long as it likes.
+void end_soon(ExitStatus status);
 
 }  // namespace lyr::command_line

@@ -72,6 +72,11 @@ struct GuardLimits {
     double frozen_time_s = 20;
 };
 
+// A controller overshoots a little, and range_c must not be met by that.
+inline constexpr double headroom_c = 5;
+// Nor by a heater that is cold.
+inline constexpr double usual_room_c = 20;
+
 struct Pid {
     double kp = 0;  // share of full power for 1 °C
     double ki = 0;  // ... for 1 °C over 1 s

@@ -1,7 +1,10 @@
 // A heater is there as soon as a key of its section is; until then it has no defaults either.
 
+#include "target/config/heater_keys.h"
+
 #include <algorithm>
 
+#include "base/text.h"
 #include "target/config/key_rules.h"
 
 namespace lyr::config {
@@ -154,7 +157,77 @@ void append_heater(std::vector<Key>& keys, std::size_t n) {
     append_model(heater);
 }
 
+void append_two_ways(const std::string& section, const std::optional<Pin>& output,
+                     const std::string& pwm, Problems& problems) {
+    if (output && !pwm.empty())
+        problems.emplace_back(section + ".pwm",
+                              ": the heat goes out by a line or by a kernel PWM, and " + section +
+                                  ".output is given too");
+}
+
+// Keys that only some kinds of sensor look at, and that a kind needs.
+void append_sensor_problems(const std::string& section, const Sensor& sensor, const Given& given,
+                            Problems& problems) {
+    struct Owner {
+        const char* key;
+        SensorKind kind, or_kind;
+        const char* names;
+    };
+    using enum SensorKind;
+    constexpr std::array<Owner, 4> owners{
+        {{".sensor.r25_ohm", beta, beta, "\"beta\""},
+         {".sensor.beta_k", beta, beta, "\"beta\""},
+         {".sensor.points", steinhart_hart, table, "\"steinhart_hart\" or \"table\""},
+         {".sensor.celsius_per_unit", celsius, celsius, "\"celsius\""}}};
+    for (const Owner& owner : owners)
+        if (given(section + owner.key) && sensor.kind != owner.kind && sensor.kind != owner.or_kind)
+            problems.emplace_back(section + owner.key,
+                                  ": only for " + section + ".sensor.kind = " + owner.names);
+    if (sensor.kind == steinhart_hart && sensor.points.size() != 3)
+        problems.emplace_back(
+            section + ".sensor.points",
+            formatted(": a steinhart_hart sensor needs 3 points, found %zu", sensor.points.size()));
+    if (sensor.kind == table && sensor.points.size() < 2)
+        problems.emplace_back(section + ".sensor.points", ": a table needs at least 2 points");
+}
+
+void append_range_problems(const std::string& section, const Heater& heater, bool is_tool,
+                           const Given& given, Problems& problems) {
+    const auto& [low_c, high_c] = std::pair(heater.guard.low_c, heater.guard.high_c);
+    const std::string range = section + ".range_c";
+    if (low_c > usual_room_c || high_c < usual_room_c + headroom_c)
+        problems.emplace_back(
+            range, formatted(": [%g, %g] leaves out a cold heater, which would be taken for a "
+                             "broken sensor; it must reach from at most %g to at least %g",
+                             low_c, high_c, usual_room_c, usual_room_c + headroom_c));
+    const std::string push = section + ".min_extrude_c";
+    if (!is_tool || heater.min_extrude_c <= high_c - headroom_c) return;
+    const std::string why = formatted("the tool gets to %g °C at the most, %g below the end of ",
+                                      high_c - headroom_c, headroom_c);
+    if (given(push))
+        problems.emplace_back(push, ": " + why + range);
+    else
+        problems.emplace_back(range, ": " + why +
+                                         formatted("it, and %s is %g: no filament could be pushed",
+                                                   push.c_str(), heater.min_extrude_c));
+}
+
 }  // namespace
+
+Problems heat_problems(const Printer& printer, const Given& given) {
+    Problems problems;
+    for (std::size_t i = 0; i < heater_count; ++i) {
+        const std::optional<Heater>& heater = printer.heaters[i];
+        if (!heater) continue;
+        const std::string section = "heater." + std::string(heater_names[i]);
+        append_two_ways(section, heater->output, heater->pwm, problems);
+        append_sensor_problems(section, heater->sensor, given, problems);
+        append_range_problems(section, *heater, i == heater_tool, given, problems);
+    }
+    if (const auto& fan = printer.part_fan)
+        append_two_ways("fan.part", fan->output, fan->pwm, problems);
+    return problems;
+}
 
 void append_heat_keys(std::vector<Key>& keys) {
     for (std::size_t n = 0; n < heater_count; ++n) append_heater(keys, n);

@@ -189,13 +189,73 @@ void append_simulated(std::vector<Key>& keys) {
     towers("simulate.endstop_error_mm", &SimulatedMachine::endstop_error_mm);
 }
 
+void append_endstop_problems(const Printer& printer, std::size_t number, const Given& given,
+                             Problems& problems) {
+    const Endstop& endstop = printer.endstops[number];
+    if (!endstop.input) return;
+    const bool is_delta = printer.kinematics == Kinematics::delta;
+    // Each tower of a delta stands for the height of the head.
+    const std::size_t limited = is_delta ? static_cast<std::size_t>(axis_z) : number;
+    const Axis& axis = printer.axes[limited];
+    const bool is_high = endstop.at_high_end || is_delta;
+    const std::string path = "axis." + std::string(axis_names[number]) + '.';
+    const std::string range =
+        formatted("axis.%s.range_mm = [%g, %g]", std::string(axis_names[limited]).c_str(),
+                  axis.min_mm, axis.max_mm);
+    if (endstop.at_mm && (is_high ? *endstop.at_mm <= axis.min_mm : *endstop.at_mm >= axis.max_mm))
+        problems.emplace_back(
+            path + "endstop_mm",
+            formatted(": %g is at the other end of %s%s", *endstop.at_mm, range.c_str(),
+                      is_delta  ? ""
+                      : is_high ? "; endstop_end = \"low\" would have it there"
+                                : "; endstop_end = \"high\" would have it there"));
+    if (endstop.back_off_mm >= axis.max_mm - axis.min_mm)
+        problems.emplace_back(path + "home_back_off_mm", ": longer than all of " + range);
+    if (number == axis_z && printer.homing.lift_mm >= axis.max_mm - axis.min_mm)
+        problems.emplace_back(
+            given("homing.lift_mm") ? "homing.lift_mm" : path + "range_mm",
+            formatted(": homing.lift_mm = %g is more than all of ", printer.homing.lift_mm) +
+                range);
+}
+
+void append_probe_problems(const Printer& printer, const Given& given, Problems& problems) {
+    if (!printer.probe || !printer.probe->input) return;
+    const auto need = [&](const std::string& key, double x_mm, double y_mm) {
+        if (probe_reaches(printer, x_mm, y_mm)) return true;
+        problems.emplace_back(
+            key, formatted(": the probe cannot get to x = %g, y = %g, since with probe.offset_mm "
+                           "= [%g, %g, %g] the head would stand at x = %g, y = %g",
+                           x_mm, y_mm, printer.probe->offset_mm[0], printer.probe->offset_mm[1],
+                           printer.probe->offset_mm[2], x_mm - printer.probe->offset_mm[0],
+                           y_mm - printer.probe->offset_mm[1]));
+        return false;
+    };
+    if (given("probe.home_mm"))
+        need("probe.home_mm", (*printer.probe->home_mm)[0], (*printer.probe->home_mm)[1]);
+    // What has been measured already was within reach.
+    if (!printer.mesh.has_area || !printer.mesh.heights_mm.empty()) return;
+    const auto& [x0, y0, x1, y1] = printer.mesh.area_mm;
+    for (const auto& [x_mm, y_mm] : {std::pair{x0, y0}, {x1, y0}, {x0, y1}, {x1, y1}})
+        if (!need("mesh.area_mm", x_mm, y_mm)) return;
+}
+
 void append_mesh_problems(const BedMesh& mesh, Problems& problems) {
     const auto& [x0, y0, x1, y1] = mesh.area_mm;
     if (mesh.has_area && !(x0 < x1 && y0 < y1))
         problems.emplace_back("mesh.area_mm",
                               ": the first corner must be the lower one in x and y");
     if (mesh.heights_mm.empty()) return;
-    if (!mesh.has_area) problems.emplace_back("mesh.heights_mm", ": needs area_mm beside it");
+    double most_mm = 0;
+    for (const std::vector<double>& row : mesh.heights_mm)
+        for (const double height_mm : row) most_mm = std::max(most_mm, std::abs(height_mm));
+    if (mesh.fade_mm > 0 && mesh.fade_mm <= most_mm)
+        problems.emplace_back(
+            "mesh.fade_mm",
+            formatted(
+                ": the bed is up to %g mm off by mesh.heights_mm; fade it out over many times "
+                "that, or never (0)",
+                most_mm));
+    if (!mesh.has_area) problems.emplace_back("mesh.heights_mm", ": needs mesh.area_mm beside it");
     const std::size_t rows = mesh.heights_mm.size(), columns = mesh.heights_mm.front().size();
     if (columns != static_cast<std::size_t>(mesh.points[0]) ||
         rows != static_cast<std::size_t>(mesh.points[1]))
@@ -206,6 +266,19 @@ void append_mesh_problems(const BedMesh& mesh, Problems& problems) {
 }
 
 }  // namespace
+
+bool probe_reaches(const Printer& printer, double x_mm, double y_mm) {
+    // Corners that are exactly on a limit are within it.
+    constexpr double rounding_mm = 1e-6;
+    const std::array<double, 2> head_mm{x_mm - printer.probe->offset_mm[0],
+                                        y_mm - printer.probe->offset_mm[1]};
+    for (const std::size_t axis : {axis_x, axis_y})
+        if (head_mm[axis] < printer.axes[axis].min_mm - rounding_mm ||
+            head_mm[axis] > printer.axes[axis].max_mm + rounding_mm)
+            return false;
+    return printer.kinematics != Kinematics::delta ||
+           std::hypot(head_mm[0], head_mm[1]) <= printer.delta.reach_mm + rounding_mm;
+}
 
 bool is_calibration_key(std::string_view path) {
     constexpr std::array<std::string_view, 10> keys{
@@ -223,8 +296,7 @@ void append_homing_keys(std::vector<Key>& keys) {
     append_simulated(keys);
 }
 
-Problems homing_problems(const Printer& printer,
-                         const std::function<bool(const std::string&)>& given) {
+Problems homing_problems(const Printer& printer, const Given& given) {
     Problems problems;
     const bool is_delta = printer.kinematics == Kinematics::delta;
     std::size_t inputs = 0;
@@ -232,8 +304,11 @@ Problems homing_problems(const Printer& printer,
         const Endstop& endstop = printer.endstops[axis];
         const std::string path = "axis." + std::string(axis_names[axis]) + '.';
         inputs += endstop.input ? 1 : 0;
+        append_endstop_problems(printer, axis, given, problems);
         if (endstop.slow_mm_s > endstop.fast_mm_s)
-            problems.emplace_back(path + "home_slow_mm_s", ": faster than home_speed_mm_s");
+            problems.emplace_back(
+                path + "home_slow_mm_s",
+                formatted(": faster than %shome_speed_mm_s = %g", path.c_str(), endstop.fast_mm_s));
         if (is_delta && given(path + "endstop_end") && !endstop.at_high_end)
             problems.emplace_back(path + "endstop_end",
                                   ": the endstops of a delta are at the high end");
@@ -241,7 +316,9 @@ Problems homing_problems(const Printer& printer,
     if (is_delta && inputs != 0 && inputs != 3)
         problems.emplace_back("axis", ": a delta needs the endstops of all three towers or none");
     if (printer.probe && printer.probe->slow_mm_s > printer.probe->fast_mm_s)
-        problems.emplace_back("probe.slow_mm_s", ": faster than speed_mm_s");
+        problems.emplace_back("probe.slow_mm_s", formatted(": faster than probe.speed_mm_s = %g",
+                                                           printer.probe->fast_mm_s));
+    append_probe_problems(printer, given, problems);
     append_mesh_problems(printer.mesh, problems);
     return problems;
 }

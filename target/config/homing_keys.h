@@ -11,7 +11,6 @@ namespace lyr::config {
 
 void append_homing_keys(std::vector<Key>& keys);
 
-Problems homing_problems(const Printer& printer,
-                         const std::function<bool(const std::string&)>& given);
+Problems homing_problems(const Printer& printer, const Given& given);
 
 }  // namespace lyr::config

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "target/config/heater_keys.h"
 #include "target/config/homing_keys.h"
 #include "target/config/key_rules.h"
 #include "target/config/life_keys.h"

@@ -34,7 +34,5 @@ struct Key {
 };
 
 std::vector<Key> printer_keys();
-// Those of heaters and fans.
-void append_heat_keys(std::vector<Key>& keys);
 
 }  // namespace lyr::config

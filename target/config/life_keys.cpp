@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "base/text.h"
 #include "target/config/key_rules.h"
 
 namespace lyr::config {
@@ -65,11 +64,9 @@ void append_life_keys(std::vector<Key>& keys) {
 Problems life_problems(const Printer& printer) {
     if (!printer.pause.park_mm) return {};
     const auto& [x_mm, y_mm] = *printer.pause.park_mm;
-    const auto is_in = [](double at_mm, const Axis& axis) {
-        return at_mm >= axis.min_mm && at_mm <= axis.max_mm;
-    };
-    if (!is_in(x_mm, printer.axes[axis_x]) || !is_in(y_mm, printer.axes[axis_y]))
-        return {{"pause.park_mm", ": outside of range_mm of the axes"}};
+    for (const auto& [at_mm, number] : {std::pair{x_mm, axis_x}, {y_mm, axis_y}})
+        if (const auto where = outside(printer, number, at_mm))
+            return {{"pause.park_mm", ": " + *where}};
     if (printer.kinematics == Kinematics::delta && std::hypot(x_mm, y_mm) > printer.delta.reach_mm)
         return {{"pause.park_mm", ": farther from the middle than delta.reach_mm"}};
     return {};

@@ -13,6 +13,7 @@
 namespace lyr::config {
 namespace {
 
+constexpr double ns_per_ms = 1e6;
 constexpr std::array<std::string_view, 3> kinematics_names{"cartesian", "corexy", "delta"};
 constexpr std::array<std::string_view, 4> shaper_names{"none", "zv", "mzv", "ei"};
 
@@ -48,9 +49,35 @@ void append_shaper(std::vector<Key>& keys, std::size_t axis) {
     }));
 }
 
-void append_delta_problems(const Printer& printer,
-                           const std::function<bool(const std::string&)>& given,
-                           Problems& problems) {
+constexpr double full_turn_deg = 360;
+// Far below the 120 of any delta that was ever built.
+constexpr double least_apart_deg = 30;
+
+void append_start_problems(const Printer& printer, const Given& given, Problems& problems) {
+    for (std::size_t i = axis_x; i <= axis_z; ++i) {
+        const auto where = outside(printer, i, printer.start_mm[i]);
+        if (!where) continue;
+        if (given("start_mm"))
+            problems.emplace_back("start_mm", ": " + *where);
+        else
+            problems.emplace_back(
+                "axis." + std::string(axis_names[i]) + ".range_mm",
+                ": start_mm is [0, 0, 0] where it is not given, and " + *where + "; give start_mm");
+    }
+}
+
+void append_shaper_problems(const Printer& printer, const Given& given, Problems& problems) {
+    for (std::size_t axis = axis_x; axis <= axis_z; ++axis) {
+        const std::string path = "shaper." + std::string(axis_names[axis]);
+        if (printer.shapers[axis].kind != ShaperKind::none && !given(path + ".frequency_hz"))
+            problems.emplace_back(path + ".kind", ": needs " + path + ".frequency_hz beside it");
+        if (given(path) && !given(path + ".kind"))
+            problems.emplace_back(path, ": does nothing without " + path +
+                                            ".kind; `kind = \"none\"` switches it off");
+    }
+}
+
+void append_delta_problems(const Printer& printer, const Given& given, Problems& problems) {
     bool whole = true;
     for (const char* key : {"delta.arm_mm", "delta.radius_mm", "delta.reach_mm"}) {
         if (given(key)) continue;
@@ -68,6 +95,17 @@ void append_delta_problems(const Printer& printer,
                     std::max(0.0, flattest_arm_share * frame.arm_mm[i] - frame.radius_mm[i])));
             break;
         }
+    for (std::size_t i = 0; i < frame.tower_angle_deg.size(); ++i) {
+        const double apart_deg = std::abs(std::remainder(
+            frame.tower_angle_deg[i] - frame.tower_angle_deg[(i + 1) % 3], full_turn_deg));
+        if (apart_deg >= least_apart_deg) continue;
+        problems.emplace_back(
+            "delta.tower_angle_deg",
+            formatted(": two towers are %g degrees apart, and must be at least %g: with them in "
+                      "one place nothing tells x from y",
+                      apart_deg, least_apart_deg));
+        break;
+    }
     if (std::hypot(printer.start_mm[0], printer.start_mm[1]) > frame.reach_mm)
         problems.emplace_back("start_mm", ": farther from the middle than delta.reach_mm");
 }
@@ -96,8 +134,7 @@ void append_machine_keys(std::vector<Key>& keys) {
                           [](Draft& d, double v) { d.printer.pressure_smooth_s = v; }));
 }
 
-Problems machine_problems(const Printer& printer,
-                          const std::function<bool(const std::string&)>& given) {
+Problems machine_problems(const Printer& printer, const Given& given) {
     Problems problems;
     if (printer.kinematics == Kinematics::delta) {
         append_delta_problems(printer, given, problems);
@@ -106,12 +143,24 @@ Problems machine_problems(const Printer& printer,
     }
     if (printer.max_jerk_mm_s3 > 0 && printer.max_jerk_mm_s3 < 1)
         problems.emplace_back("max_jerk_mm_s3", ": expected 0 for no limit, or a number from 1 on");
-    for (std::size_t axis = axis_x; axis <= axis_z; ++axis) {
-        const std::string path = "shaper." + std::string(axis_names[axis]);
-        if (printer.shapers[axis].kind != ShaperKind::none && !given(path + ".frequency_hz"))
-            problems.emplace_back(path + ".kind", ": needs frequency_hz beside it");
-    }
+    append_start_problems(printer, given, problems);
+    append_shaper_problems(printer, given, problems);
+    const auto& late_ns = printer.timing.late_ns;
+    if (late_ns && *late_ns >= printer.pulse.late_limit_ns)
+        problems.emplace_back(
+            "timing.late_us",
+            formatted(": one edge in 10,000 is later than pulse.late_limit_ms = %g, which ends a "
+                      "print",
+                      static_cast<double>(printer.pulse.late_limit_ns) / ns_per_ms));
     return problems;
+}
+
+std::optional<std::string> outside(const Printer& printer, std::size_t axis, double at_mm) {
+    const Axis& limits = printer.axes[axis];
+    if (at_mm >= limits.min_mm && at_mm <= limits.max_mm) return std::nullopt;
+    const std::string name(axis_names[axis]);
+    return formatted("%s = %g is outside of axis.%s.range_mm = [%g, %g]", name.c_str(), at_mm,
+                     name.c_str(), limits.min_mm, limits.max_mm);
 }
 
 double fastest_motor_mm_s(const Printer& printer, std::size_t motor) {

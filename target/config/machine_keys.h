@@ -19,8 +19,11 @@ namespace lyr::config {
 void append_machine_keys(std::vector<Key>& keys);
 
 using Problems = std::vector<std::pair<std::string, std::string>>;
-// `given` says whether the file has a key.
-Problems machine_problems(const Printer& printer,
-                          const std::function<bool(const std::string&)>& given);
+// Whether the file has a key.
+using Given = std::function<bool(const std::string&)>;
+Problems machine_problems(const Printer& printer, const Given& given);
+
+// "x = 300 is outside of axis.x.range_mm = [0, 220]"; none: it is within.
+std::optional<std::string> outside(const Printer& printer, std::size_t axis, double at_mm);
 
 }  // namespace lyr::config

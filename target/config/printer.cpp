@@ -16,6 +16,7 @@
 
 #include "base/constants.h"
 #include "base/nearest_name.h"
+#include "target/config/heater_keys.h"
 #include "target/config/homing_keys.h"
 #include "target/config/keys.h"
 #include "target/config/life_keys.h"
@@ -55,7 +56,6 @@ public:
     void table(const toml::table& table, const std::string& prefix);
     void check_missing();
     void check_lines();
-    void check_heat();
     void check_calibration();
     void check_files();
     void check_pulses();
@@ -181,33 +181,6 @@ void Walk::check_lines() {
     }
 }
 
-// What concerns several keys of one heater.
-void Walk::check_heat() {
-    const auto both = [this](const std::string& section, const std::optional<Pin>& output,
-                             const std::string& pwm) {
-        if (output && !pwm.empty())
-            problem(place(section + ".pwm"),
-                    section + ".pwm: the heat goes out by a line or by a kernel PWM, and " +
-                        section + ".output is given too");
-    };
-    for (std::size_t i = 0; i < heater_count; ++i) {
-        const std::optional<Heater>& heater = draft_.printer.heaters[i];
-        if (!heater) continue;
-        const std::string section = "heater." + std::string(heater_names[i]);
-        both(section, heater->output, heater->pwm);
-        const SensorKind kind = heater->sensor.kind;
-        const std::size_t points = heater->sensor.points.size();
-        if (kind == SensorKind::steinhart_hart && points != 3)
-            problem(place(section + ".sensor"),
-                    section + ".sensor.points: a steinhart_hart sensor needs 3 points, found " +
-                        std::to_string(points));
-        if (kind == SensorKind::table && points < 2)
-            problem(place(section + ".sensor"),
-                    section + ".sensor.points: a table needs at least 2 points");
-    }
-    if (const auto& fan = draft_.printer.part_fan) both("fan.part", fan->output, fan->pwm);
-}
-
 // Of two that share a channel one would be heated by the other's power, and stay on when that is a fan; of two that share a
 // sensor nobody would watch one.
 void Walk::check_files() {
@@ -247,9 +220,10 @@ void Walk::check_pulses() {
         const double rate_hz = fastest_motor_mm_s(draft_.printer, i) * axis.steps_per_mm;
         if (rate_hz * needed_ns <= ns_per_s) continue;
         const std::string path = "axis." + std::string(axis_names[i]) + ".max_speed_mm_s";
-        problem(place(path), path + ": " + std::to_string(std::llround(rate_hz)) +
-                                 " steps a second leave no time for pulses of high_us + low_us = " +
-                                 std::to_string(pulse.high_ns + pulse.low_ns) + " ns");
+        problem(place(path),
+                path + ": " + std::to_string(std::llround(rate_hz)) +
+                    " steps a second leave no time for pulses of pulse.high_us + pulse.low_us = " +
+                    std::to_string(pulse.high_ns + pulse.low_ns) + " ns");
     }
 }
 
@@ -257,8 +231,16 @@ void Walk::check_machine() {
     const auto given = [this](const std::string& path) { return places_.count(path) != 0; };
     for (const auto& problems :
          {machine_problems(draft_.printer, given), homing_problems(draft_.printer, given),
-          life_problems(draft_.printer)})
-        for (const auto& [path, message] : problems) problem(place(path), path + message);
+          heat_problems(draft_.printer, given), life_problems(draft_.printer)})
+        for (const auto& [path, message] : problems) {
+            const auto& calibrated = draft_.printer.calibrated;
+            const bool is_calibrated =
+                std::find(calibrated.begin(), calibrated.end(), path) != calibrated.end();
+            problem(place(path), path + message +
+                                     (is_calibrated ? "; it is in the calibration file, " +
+                                                          draft_.printer.calibration_file
+                                                    : ""));
+        }
 }
 
 const std::pair<Place, std::string>* Walk::first_problem() const {
@@ -328,7 +310,6 @@ Result<Printer> parse_printer(std::string_view text, const std::string& file) {
     // A mistyped key is missing too; only the slip itself is worth telling.
     if (!walk.first_problem()) walk.check_missing();
     walk.check_lines();
-    walk.check_heat();
     walk.check_files();
     walk.check_pulses();
     if (!walk.first_problem()) walk.check_machine();

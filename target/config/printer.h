@@ -132,6 +132,9 @@ bool is_calibration_key(std::string_view path);
 // Every line of the printer, with the key that names it.
 std::vector<std::pair<std::string, Pin>> used_lines(const Printer& printer);
 
+// Whether the head can stand where the printer's probe is over the place.
+bool probe_reaches(const Printer& printer, double x_mm, double y_mm);
+
 // The fastest that the motor of an axis ever moves, in mm of its steps_per_mm: a belt of a CoreXY follows
 // two axes, a carriage of a delta is fastest where its arm is flattest.
 double fastest_motor_mm_s(const Printer& printer, std::size_t motor);

@@ -50,7 +50,7 @@ enum class Drive : std::uint8_t { push_pull, open_drain };
 
 // What to request: a line of a kernel chip, by its number there or by its name.
 struct LineRequest {
-    std::string purpose;  // "x.step": in messages and traces
+    std::string purpose;  // "axis.x.step": in messages
     std::string chip;     // "gpiochip0", "/dev/gpiochip0" or a label such as "pinctrl-bcm2835"
     std::variant<std::uint32_t, std::string> line;
     bool active_low = false;

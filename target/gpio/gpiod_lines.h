@@ -19,7 +19,7 @@ struct OpenChip {
 };
 
 Diagnostic machine_error(std::string message);
-// "x.step: line 17 of gpiochip0"
+// "axis.x.step: line 17 of gpiochip0"
 std::string line_text(const LineRequest& request);
 Result<OpenChip> open_chip(const LineRequest& request, const std::string& devices = "/dev");
 Result<FoundLine> find_line(const OpenChip& chip, const LineRequest& request);

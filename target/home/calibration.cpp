@@ -103,7 +103,7 @@ std::vector<Spot> spots_of(const config::Printer& printer, Calibration what) {
 
 Status check_reached(const config::Printer& printer, const std::vector<Spot>& spots) {
     for (const Spot& spot : spots)
-        if (!reaches(printer, spot))
+        if (!config::probe_reaches(printer, spot.x_mm, spot.y_mm))
             return refused(
                 formatted("the probe cannot get to x %g, y %g: see mesh.area_mm and "
                           "probe.offset_mm",

@@ -40,9 +40,10 @@ std::vector<gpio::InputRequest> contact_requests(const config::Printer& printer)
     for (std::size_t i = 0; i < config::contact_count; ++i) {
         const std::optional<config::Pin>& pin = pin_of(printer, i);
         if (!pin) continue;
-        const std::string purpose = i == config::contact_probe
-                                        ? "probe"
-                                        : std::string(config::contact_names[i]) + ".endstop";
+        const std::string purpose =
+            i == config::contact_probe
+                ? "probe.input"
+                : "axis." + std::string(config::contact_names[i]) + ".endstop";
         requests.push_back({{purpose, pin->chip, pin->line, pin->active_low}, pull_of(pin->pull)});
     }
     return requests;

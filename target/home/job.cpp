@@ -58,9 +58,9 @@ Status check_place(const config::Printer& printer, const motion::Point& to) {
     for (std::size_t i = 0; i < at_mm.size(); ++i) {
         const config::Axis& axis = printer.axes[i];
         if (at_mm[i] >= axis.min_mm && at_mm[i] <= axis.max_mm) continue;
-        return refused(formatted("%s would go to %g mm, and its range_mm is %g to %g",
-                                 std::string(config::axis_names[i]).c_str(), at_mm[i], axis.min_mm,
-                                 axis.max_mm));
+        const std::string name(config::axis_names[i]);
+        return refused(formatted("%s would go to %g mm, and axis.%s.range_mm is %g to %g",
+                                 name.c_str(), at_mm[i], name.c_str(), axis.min_mm, axis.max_mm));
     }
     const double off_mm = std::hypot(to.x, to.y);
     if (printer.kinematics == config::Kinematics::delta && off_mm > printer.delta.reach_mm)

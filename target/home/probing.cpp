@@ -10,9 +10,6 @@ namespace {
 
 using config::axis_x, config::axis_y, config::axis_z;
 
-// Corners that are exactly on a limit are within it.
-constexpr double rounding_mm = 1e-6;
-
 Diagnostic at(const Spot& spot, const Diagnostic& error) {
     Diagnostic placed = error;
     placed.message = formatted("at x %g, y %g: ", spot.x_mm, spot.y_mm) + error.message;
@@ -59,20 +56,9 @@ Result<ByAxes::Positions> touch_here(ByAxes& machine, const config::Printer& pri
 
 }  // namespace
 
-bool reaches(const config::Printer& printer, const Spot& spot) {
-    const std::array<double, 2> head{spot.x_mm - printer.probe->offset_mm[0],
-                                     spot.y_mm - printer.probe->offset_mm[1]};
-    for (const std::size_t axis : {axis_x, axis_y})
-        if (head[axis] < printer.axes[axis].min_mm - rounding_mm ||
-            head[axis] > printer.axes[axis].max_mm + rounding_mm)
-            return false;
-    return printer.kinematics != config::Kinematics::delta ||
-           std::hypot(head[0], head[1]) <= printer.delta.reach_mm + rounding_mm;
-}
-
 Result<ByAxes::Positions> touch_bed(ByAxes& machine, const config::Printer& printer,
                                     const Spot& spot) {
-    if (!reaches(printer, spot))
+    if (!config::probe_reaches(printer, spot.x_mm, spot.y_mm))
         return at(spot, {Severity::error, ExitStatus::machine, "the probe cannot get there", {}});
     const ByAxes::Positions& from = machine.at_mm();
     const Result<Moved> there = machine.move(

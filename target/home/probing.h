@@ -21,7 +21,4 @@ struct Spot {
 Result<ByAxes::Positions> touch_bed(ByAxes& machine, const config::Printer& printer,
                                     const Spot& spot);
 
-// Whether the head may go to where the probe is over it.
-bool reaches(const config::Printer& printer, const Spot& spot);
-
 }  // namespace lyr::home

@@ -33,9 +33,10 @@ Diagnostic stuck(const Target& target) {
 }
 
 Diagnostic differ(const Target& target, double off_mm) {
-    return failed(target, formatted(": two approaches differ by %.3f mm, and the tolerance is %g: "
-                                    "the contact is loose, or the motor loses steps",
-                                    off_mm, target.tolerance_mm));
+    return failed(target,
+                  formatted(": two approaches differ by %.3f mm, and homing.tolerance_mm is %g: "
+                            "the contact is loose, or the motor loses steps",
+                            off_mm, target.tolerance_mm));
 }
 
 }  // namespace

@@ -121,7 +121,10 @@ double length_of(const Path& path) {
 
 Point point_at(const Path& path, double distance_mm) {
     const double length_mm = length_of(path);
-    const double share = length_mm > 0 ? distance_mm / length_mm : 0;
+    return point_at_share(path, length_mm > 0 ? distance_mm / length_mm : 0);
+}
+
+Point point_at_share(const Path& path, double share) {
     return std::visit([share](const auto& shape) { return at_share(shape, share); }, path);
 }
 

@@ -67,6 +67,8 @@ double advance_of(const Path& path);
 // Contract 3.
 double length_of(const Path& path);
 Point point_at(const Path& path, double distance_mm);
+// For who knows the length already.
+Point point_at_share(const Path& path, double share);
 // The direction of motion; contract 4.
 Point tangent_at(const Path& path, double distance_mm);
 

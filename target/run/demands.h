@@ -15,8 +15,7 @@
 
 namespace lyr::run {
 
-// A controller overshoots a little, and range_c must not be met by that.
-inline constexpr double headroom_c = 5;
+using config::headroom_c;
 
 Status check_demands(const Inspection& inspection, const config::Printer& printer, bool no_heat,
                      Diagnostics& notes, bool can_resume = false);

@@ -51,13 +51,12 @@ Status check_range(const Box& box, const PathCurve& curve, const std::string& pa
         const config::Axis& axis = printer.axes[i];
         const bool below = box.low_mm[i] < axis.min_mm - rounding_mm;
         if (!below && !(box.high_mm[i] > axis.max_mm + rounding_mm)) continue;
+        const std::string name(axis_names[i]);
         char text[200];
-        std::snprintf(
-            text, sizeof text,
-            "the path goes to %.3f mm on axis %s, whose range is %g to %g mm (range_mm of the "
-            "printer)",
-            below ? box.low_mm[i] : box.high_mm[i], std::string(axis_names[i]).c_str(), axis.min_mm,
-            axis.max_mm);
+        std::snprintf(text, sizeof text,
+                      "the path goes to %.3f mm on axis %s, and axis.%s.range_mm is %g to %g",
+                      below ? box.low_mm[i] : box.high_mm[i], name.c_str(), name.c_str(),
+                      axis.min_mm, axis.max_mm);
         Diagnostic error{Severity::error, ExitStatus::machine, text, {}};
         error.where.file = path;
         error.where.layer = static_cast<int>(curve.layer) + 1;

@@ -1,9 +1,9 @@
 // A slot is one sector of a disk, and the two lie in different blocks of a file system:
 //
 //     bytes 0..7   "LYRJRNL1"       32..35  layers
-//           8..15  sequence         36..39  1 if parked
+//           8..15  sequence         36..39  1 at rest, 2 on the path, 0 where it is not known
 //          16..23  file's length    40..47  time_ns
-//          24..27  file's CRC       48..55  height in nm, if parked
+//          24..27  file's CRC       48..55  height in nm, if at rest; x and y in um, if on the path
 //          28..31  layer            56..59  CRC-32C of bytes 0..55
 //
 // All numbers are little-endian.
@@ -29,6 +29,7 @@ namespace {
 constexpr std::size_t slot_bytes = 60, checked_bytes = 56;
 constexpr off_t slot_spacing = 4096;
 constexpr std::array<char, 8> magic{'L', 'Y', 'R', 'J', 'R', 'N', 'L', '1'};
+constexpr std::uint32_t at_rest = 1, on_path = 2;
 using Slot = std::array<std::byte, slot_bytes>;
 
 template <class Number>
@@ -54,9 +55,14 @@ Slot slot_of(const JournalEntry& entry, std::uint64_t sequence) {
     put(slot, 24, entry.file.crc);
     put(slot, 28, entry.layer);
     put(slot, 32, entry.layers);
-    put(slot, 36, std::uint32_t{entry.parked_nm ? 1u : 0u});
+    put(slot, 36, entry.rest_nm ? at_rest : entry.place_um ? on_path : std::uint32_t{0});
     put(slot, 40, entry.time_ns);
-    put(slot, 48, entry.parked_nm.value_or(0));
+    if (entry.rest_nm) {
+        put(slot, 48, *entry.rest_nm);
+    } else if (entry.place_um) {
+        put(slot, 48, (*entry.place_um)[0]);
+        put(slot, 52, (*entry.place_um)[1]);
+    }
     put(slot, checked_bytes, format::crc32c(std::span(slot).first(checked_bytes)));
     return slot;
 }
@@ -75,8 +81,12 @@ std::optional<Numbered> entry_of(const Slot& slot) {
                    get<std::uint32_t>(slot, 28),
                    get<std::uint32_t>(slot, 32),
                    get<std::int64_t>(slot, 40),
+                   {},
                    {}}};
-    if (get<std::uint32_t>(slot, 36) != 0) read.entry.parked_nm = get<std::int64_t>(slot, 48);
+    const auto whereabouts = get<std::uint32_t>(slot, 36);
+    if (whereabouts == at_rest) read.entry.rest_nm = get<std::int64_t>(slot, 48);
+    if (whereabouts == on_path)
+        read.entry.place_um = {get<std::int32_t>(slot, 48), get<std::int32_t>(slot, 52)};
     return read;
 }
 

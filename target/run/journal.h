@@ -12,6 +12,7 @@
 
 #pragma once
 
+#include <array>
 #include <condition_variable>
 #include <cstdint>
 #include <mutex>
@@ -35,8 +36,10 @@ struct JournalEntry {
     FileIdentity file;
     std::uint32_t layer = 0;  // that the head was in, from 1; 0: before the first
     std::uint32_t layers = 0;
-    std::int64_t time_ns = 0;               // of the plan
-    std::optional<std::int64_t> parked_nm;  // height of the head, if it was parked
+    std::int64_t time_ns = 0;  // of the plan
+    // Where the head was, if that was noted: its height at rest, or else x and y on the path.
+    std::optional<std::int64_t> rest_nm;
+    std::optional<std::array<std::int32_t, 2>> place_um;
     friend bool operator==(const JournalEntry&, const JournalEntry&) = default;
 };
 

@@ -12,6 +12,8 @@
 namespace lyr::run {
 namespace {
 
+constexpr double um_per_mm = 1e3, nm_per_mm = 1e6;
+
 std::string name_of(std::size_t heater) {
     return std::string(config::heater_names[heater]);
 }
@@ -233,7 +235,7 @@ motion::Point Life::head() const {
 
 void Life::keep_journal(JournalWriter* journal, const FileIdentity& identity) {
     journal_ = journal;
-    noted_ = {identity, layer_, print_.layers, 0, {}};
+    noted_ = {identity, layer_, print_.layers, 0, {}, {}};
     // What an earlier print left there must not be resumed any more.
     if (journal_) journal_->post(noted_);
 }
@@ -270,15 +272,36 @@ void Life::note() {
     hear_of_journal();
     JournalEntry entry = noted_;
     entry.layer = layer_;
-    entry.parked_nm.reset();
-    constexpr double nm_per_mm = 1e6;
+    entry.rest_nm.reset();
+    // Over a crooked bed the height of the head depends on its place, which is worth a write now and then.
+    constexpr double place_interval_s = 1;
+    if (!printer_.mesh.heights_mm.empty() && now_s_ - noted_s_ >= place_interval_s) {
+        const motion::Point on_path = head_at(printer_, course_.steps_on_path());
+        entry.place_um = {static_cast<std::int32_t>(std::lround(on_path.x * um_per_mm)),
+                          static_cast<std::int32_t>(std::lround(on_path.y * um_per_mm))};
+    }
     // A height that is too low prints in the air; one that is too high would drive the nozzle into the part. So it is
     // parked from when it has arrived to well before it leaves.
-    if (phase_ == Phase::resting) entry.parked_nm = std::llround(parked_at_.z * nm_per_mm);
-    if (entry == noted_) return;
+    if (phase_ == Phase::resting) {
+        entry.rest_nm = std::llround(parked_at_.z * nm_per_mm);
+        entry.place_um.reset();
+    }
+    if (entry != noted_) post(entry);
+}
+
+void Life::post(const JournalEntry& entry) {
     noted_ = entry;
     noted_.time_ns = course_.time_ns.load();
+    noted_s_ = now_s_;
     journal_->post(noted_);
+}
+
+void Life::note_rest() {
+    if (!journal_ || !course_.started.load()) return;
+    JournalEntry entry = noted_;
+    entry.rest_nm = std::llround(head().z * nm_per_mm);
+    entry.place_um.reset();
+    post(entry);
 }
 
 void Life::press(std::size_t input) {

@@ -15,8 +15,9 @@
 //     `cut`.
 //  5. What cannot be done as things are is refused, and status().message says why.
 //  6. Commands take effect within the next tick; a speed above that of the file does with moves that are not planned yet.
-//  7. With a journal, each layer is noted there when the head begins it, and where the head is parked; a journal that
-//     cannot be written is told, and is no reason to stop.
+//  7. With a journal, each layer is noted there when the head begins it, where the head is parked, over a crooked bed once a
+//     second where it is in the layer, and how high it came to rest when it was stopped; a journal that cannot be written
+//     is told, and is no reason to stop.
 //  8. A print that resumes after it was cut off begins with heat, then the head is lifted, unless that was done.
 
 #pragma once
@@ -60,6 +61,8 @@ public:
     void tick(double now_s);
     // A button or sensor of the printer; of config's InputNumber.
     void press(std::size_t input);
+    // The motion has ended before the path has, and where the head is is known.
+    void note_rest();
     // What the print came to; the last status.
     void end(const Status& result, bool is_position_known);
 
@@ -94,6 +97,7 @@ private:
     void go_back();
     void lift();
     void note();
+    void post(const JournalEntry& entry);
     void hear_of_journal();
     motion::Point head() const;
     void returned();
@@ -130,6 +134,7 @@ private:
     std::uint32_t layer_ = 0;
     JournalWriter* journal_ = nullptr;
     JournalEntry noted_;
+    double noted_s_ = 0;
     std::optional<Diagnostic> journal_error_;
     std::optional<double> lift_from_mm_;  // a height: before the path begins
     StepPositions lifted_steps_{};        // by that lift

@@ -12,6 +12,11 @@ std::string name_of(std::size_t axis, const char* line) {
     return std::string(axis_names[axis]) + '.' + line;
 }
 
+// As an owner would write it.
+std::string key_of(std::size_t axis, const char* line) {
+    return "axis." + name_of(axis, line);
+}
+
 }  // namespace
 
 gpio::LineRequest line_request(std::string purpose, const config::Pin& pin, bool inverted) {
@@ -40,16 +45,16 @@ Result<std::vector<gpio::LineRequest>> line_requests(const config::Printer& prin
         if (!axis.step || !axis.direction)
             return Diagnostic{Severity::error,
                               ExitStatus::machine,
-                              "printer \"" + printer.name + "\" has no axis." +
-                                  name_of(i, axis.step ? "direction" : "step") +
+                              "printer \"" + printer.name + "\" has no " +
+                                  key_of(i, axis.step ? "direction" : "step") +
                                   ": a line is needed to print (not to --simulate)",
                               {}};
-        requests.push_back(line_request(name_of(i, "step"), *axis.step));
-        requests.push_back(line_request(name_of(i, "direction"), *axis.direction, axis.invert));
+        requests.push_back(line_request(key_of(i, "step"), *axis.step));
+        requests.push_back(line_request(key_of(i, "direction"), *axis.direction, axis.invert));
     }
     for (std::size_t i = 0; i < axis_count; ++i)
         if (const auto& enable = printer.axes[i].enable)
-            requests.push_back(line_request(name_of(i, "enable"), *enable));
+            requests.push_back(line_request(key_of(i, "enable"), *enable));
     return requests;
 }
 

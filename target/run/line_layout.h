@@ -4,7 +4,7 @@
 // Contract
 //  1. Axis a has its step line at bit 2a and its direction line at bit 2a + 1; the enable lines that
 //     the printer has follow in the order of the axes.
-//  2. `names` has one name a line, such as "x.step".
+//  2. `names` has one name a line, such as "x.step"; requests are named by their keys, "axis.x.step".
 //  3. line_requests() fails (status machine) with the key that is missing if an axis has no step or no
 //     direction line.
 

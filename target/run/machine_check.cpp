@@ -139,9 +139,10 @@ void MachineCheck::step(const DecodedStep& step) {
     look_until(planned_ns, step.before);
     const std::int64_t before = step.before[step.axis];
     const std::int64_t after = before + (step.positive ? 1 : -1);
-    measure(step.axis, planned_ns, before);
+    const double planned_steps = planned(step.axis, planned_ns);
+    measure(step.axis, planned_steps, before);
     at_steps_[step.axis] = carried_steps(step.axis, after);
-    measure(step.axis, planned_ns, after);
+    measure(step.axis, planned_steps, after);
     plan_.forget_before(planned_ns);
 }
 
@@ -159,7 +160,7 @@ Status MachineCheck::finish(const StepPositions& positions) {
 void MachineCheck::look_until(std::int64_t time_ns, const StepPositions& positions) {
     for (; !looks_ns_.empty() && looks_ns_.front() < time_ns; looks_ns_.pop_front())
         for (std::size_t motor = 0; motor < positions.size(); ++motor)
-            measure(motor, looks_ns_.front(), positions[motor]);
+            measure(motor, planned(motor, looks_ns_.front()), positions[motor]);
 }
 
 // A rising motor pushes the axis `play` behind it, a falling one pulls it along.
@@ -168,11 +169,12 @@ double MachineCheck::carried_steps(std::size_t motor, std::int64_t position) con
     return std::clamp(at_steps_[motor], at - play_steps_[motor], at);
 }
 
-void MachineCheck::measure(std::size_t motor, std::int64_t time_ns, std::int64_t position) {
-    const double off_steps =
-        plan_.empty()
-            ? infinity
-            : std::abs(plan_.motor_steps(motor, time_ns) - carried_steps(motor, position));
+double MachineCheck::planned(std::size_t motor, std::int64_t time_ns) const {
+    return plan_.empty() ? infinity : plan_.motor_steps(motor, time_ns);
+}
+
+void MachineCheck::measure(std::size_t motor, double planned_steps, std::int64_t position) {
+    const double off_steps = std::abs(planned_steps - carried_steps(motor, position));
     // Not the other way round: what is not a number must show.
     if (!(off_steps <= off_plan_[motor])) off_plan_[motor] = off_steps;
 }

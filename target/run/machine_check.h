@@ -40,7 +40,8 @@ private:
     void look_until(std::int64_t time_ns, const StepPositions& positions);
     // Where the play lets the axis be when the motor is at a position.
     double carried_steps(std::size_t motor, std::int64_t position) const;
-    void measure(std::size_t motor, std::int64_t time_ns, std::int64_t position);
+    double planned(std::size_t motor, std::int64_t time_ns) const;
+    void measure(std::size_t motor, double planned_steps, std::int64_t position);
 
     motion::Kinematics machine_;
     bool shaped_;

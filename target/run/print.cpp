@@ -370,9 +370,13 @@ Result<PrintReport> run(const PrintJob& job, const Prepared& prepared, gpio::Gpi
         tending.join();
     }
     const Status status = status_of(shared, life, running.outcome);
-    if (journal && (status || life.is_cancelled())) journal->remove();
+    const bool is_known = running.outcome.executed.ok() && shared.stop_requests < 2;
+    if (journal && (status || life.is_cancelled()))
+        journal->remove();
+    else if (is_known)
+        life.note_rest();
     if (journal) journal->finish();
-    life.end(status, running.outcome.executed.ok() && shared.stop_requests < 2);
+    life.end(status, is_known);
     if (!status) return status.error();
     if (life.journal_error()) report.warnings.push_back(*life.journal_error());
     report_on(running.executor, running.traced, report);
@@ -399,6 +403,7 @@ Result<PrintReport> print(const PrintJob& job, gpio::GpioChip& chip, gpio::Clock
     if (!prepared) return prepared.error();
     if (!heating && !job.no_heat && !prepared->inspection.demands.hottest.empty())
         return Diagnostic{Severity::error, ExitStatus::internal, "no heaters were opened", {}};
+    if (job.checked) job.checked();
     return run(job, *prepared, chip, clock, {heating, buttons});
 }
 
@@ -408,6 +413,7 @@ Result<PrintReport> print(const PrintJob& job) {
     if (!prepared) return prepared.error();
     const Result<std::vector<gpio::LineRequest>> requests = line_requests(job.printer);
     if (!requests) return requests.error();
+    if (job.checked) job.checked();
     // From here on lines are held: one that comes between homing and printing must not be lost, nor end the program.
     const StopSignals signals;
     const Result<std::unique_ptr<gpio::GpioChip>> chip = gpio::open_gpiod_chip(*requests);

@@ -40,6 +40,9 @@ struct PrintJob {
     // What is done on the lines before the print, such as homing: the motors are to stay on and the head at start_mm.
     std::function<Status(gpio::GpioChip&, gpio::Clock&)> before{};
     PrintControl* control = nullptr;  // none: only signals and buttons do something
+    // Called once, when the file and the printer are found right: no line is held yet, and signals still end the program.
+    // What is said later may wait for a terminal with the motors on.
+    std::function<void()> checked{};
     // Called once, when all lines are held; from here on threads may be started.
     std::function<void()> begun{};
     std::string journal{};  // its path; empty: none

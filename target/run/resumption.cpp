@@ -11,7 +11,7 @@
 namespace lyr::run {
 namespace {
 
-constexpr double nm_per_mm = 1e6;
+constexpr double um_per_mm = 1e3, nm_per_mm = 1e6;
 
 Diagnostic refused(std::string message, const std::string& file) {
     return {Severity::error, ExitStatus::input, std::move(message), {.file = file}};
@@ -49,10 +49,12 @@ Result<Resumption> find_resumption(const config::Printer& printer, const std::st
     if (const auto start = reader->next(); !start) return start.error();
     resumption.state = reader->layer().state;
     const format::LayerState& layer = resumption.state;
-    resumption.stopped_z_mm =
-        z_over_start_mm(printer, {layer.start_x_mm, layer.start_y_mm, layer.z_mm});
-    if (const auto parked_nm = resumption.entry.parked_nm)
-        resumption.stopped_z_mm = static_cast<double>(*parked_nm) / nm_per_mm;
+    motion::Point head{layer.start_x_mm, layer.start_y_mm, layer.z_mm};
+    if (const auto& place_um = resumption.entry.place_um)
+        head = {(*place_um)[0] / um_per_mm, (*place_um)[1] / um_per_mm, layer.z_mm};
+    resumption.stopped_z_mm = z_over_start_mm(printer, head);
+    if (const auto rest_nm = resumption.entry.rest_nm)
+        resumption.stopped_z_mm = static_cast<double>(*rest_nm) / nm_per_mm;
     return resumption;
 }
 
@@ -69,7 +71,7 @@ std::string text_of(const Resumption& resumption, const std::string& file) {
         "%s was cut off in layer %u of %u, %.0f s into the print, the head at z %.3f mm%s\n",
         file.c_str(), resumption.first_layer + 1, resumption.entry.layers,
         static_cast<double>(resumption.entry.time_ns) / ns_per_s, resumption.stopped_z_mm,
-        resumption.entry.parked_nm ? ", parked" : "");
+        resumption.entry.rest_nm ? ", at rest" : "");
 }
 
 }  // namespace lyr::run

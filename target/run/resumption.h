@@ -5,9 +5,9 @@
 //  2. find_resumption() refuses (status input) when there is no journal, or the file is not the one that it was written
 //     for: not by name, but by all its bytes.
 //  3. x and y of the head are those of start_mm: it was put there, or homed. Its height is that of the layer, or where the
-//     journal says that it was parked; it begins lifted by pause.lift_mm.
-//  4. Over a crooked bed, that height counts from the bed's at start_mm. Where in the layer the head was is not known: it is
-//     taken to be where the layer begins.
+//     journal says that it was at rest; it begins lifted by pause.lift_mm.
+//  4. Over a crooked bed, that height counts from the bed's at start_mm. Of a head that was not at rest, it is that of the
+//     place that the journal has; without one, of where the layer begins.
 
 #pragma once
 

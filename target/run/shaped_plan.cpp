@@ -27,6 +27,13 @@ ShapedPlan::ShapedPlan(const config::Printer& printer)
     for (std::size_t i = 0; i < steps_per_mm_.size(); ++i)
         steps_per_mm_[i] = printer.axes[i].steps_per_mm;
     origin_mm_ = carried_mm({printer.start_mm[0], printer.start_mm[1], printer.start_mm[2]});
+    const bool is_corexy = std::holds_alternative<motion::CoreXy>(machine_);
+    const bool mixes_all = shaping_.bed || std::holds_alternative<motion::Delta>(machine_);
+    for (std::size_t motor = 0; motor < depends_.size(); ++motor)
+        for (std::size_t axis = 0; axis < depends_.size(); ++axis)
+            depends_[motor][axis] =
+                mixes_all || motor == axis ||
+                (is_corexy && motor != motion::axis_z && axis != motion::axis_z);
     Reach reach;
     for (const motion::Taps& taps : shaping_.axes) reach.include(taps);
     reach.include(shaping_.extruder);
@@ -36,15 +43,12 @@ ShapedPlan::ShapedPlan(const config::Printer& printer)
 
 void ShapedPlan::append(const motion::PlannedMove& move) {
     const double advance_mm = motion::advance_of(move.path);
-    pieces_.push_back({move, fed_mm_, pressed_mm_});
+    const bool presses = advance_mm > 0 && motion::tangent_at(move.path, 0) != motion::Point{};
+    pieces_.push_back({move, fed_mm_, pressed_mm_, presses});
     const double due_mm = advance_mm - fed_error_mm_, fed_mm = fed_mm_ + due_mm;
     fed_error_mm_ = (fed_mm - fed_mm_) - due_mm;
     fed_mm_ = fed_mm;
-    if (presses(move)) pressed_mm_ += advance_mm;
-}
-
-bool ShapedPlan::presses(const motion::PlannedMove& move) {
-    return motion::advance_of(move.path) > 0 && motion::tangent_at(move.path, 0) != motion::Point{};
+    if (presses) pressed_mm_ += advance_mm;
 }
 
 void ShapedPlan::forget_before(std::int64_t time_ns) {
@@ -67,11 +71,11 @@ double ShapedPlan::channel_mm(std::size_t channel, std::int64_t plan_ns) const {
         (static_cast<double>(plan_ns - move.start_ns) - move.start_part_ns) / ns_per_s;
     const double distance_mm =
         move.profile.distance_at(std::clamp(since_s, 0.0, move.profile.duration_s));
-    const double advance_mm = motion::advance_of(move.path) * distance_mm / move.profile.length_mm;
-    if (channel == motion::axis_e) return piece.fed_mm + advance_mm;
+    const double share = distance_mm / move.profile.length_mm;
+    if (channel == motion::axis_e) return piece.fed_mm + motion::advance_of(move.path) * share;
     if (channel == motion::pressed_channel)
-        return piece.pressed_mm + (presses(move) ? advance_mm : 0);
-    const motion::Point at = motion::point_at(move.path, distance_mm);
+        return piece.pressed_mm + (piece.presses ? motion::advance_of(move.path) * share : 0);
+    const motion::Point at = motion::point_at_share(move.path, share);
     return channel == motion::axis_x ? at.x : channel == motion::axis_y ? at.y : at.z;
 }
 
@@ -103,8 +107,10 @@ double ShapedPlan::motor_steps(std::size_t motor, std::int64_t time_ns) const {
     const std::int64_t plan_ns = time_ns - lead_ns_;
     if (motor == motion::extruder_motor)
         return steps_per_mm_[motor] * shaped_mm(motion::axis_e, plan_ns);
-    const motion::Point at{shaped_mm(motion::axis_x, plan_ns), shaped_mm(motion::axis_y, plan_ns),
-                           shaped_mm(motion::axis_z, plan_ns)};
+    const auto along = [&](std::size_t axis) {
+        return depends_[motor][axis] ? shaped_mm(axis, plan_ns) : 0;
+    };
+    const motion::Point at{along(motion::axis_x), along(motion::axis_y), along(motion::axis_z)};
     return steps_per_mm_[motor] * (carried_mm(at)[motor] - origin_mm_[motor]);
 }
 

@@ -33,18 +33,19 @@ private:
     struct Piece {
         motion::PlannedMove move;
         double fed_mm = 0, pressed_mm = 0;  // at its begin
+        bool presses = false;
     };
 
     double channel_mm(std::size_t channel, std::int64_t plan_ns) const;
     double shaped_mm(std::size_t axis, std::int64_t plan_ns) const;
     const Piece& piece_at(std::int64_t plan_ns) const;
-    static bool presses(const motion::PlannedMove& move);
     std::array<double, 3> carried_mm(motion::Point at) const;
 
     motion::Kinematics machine_;
     motion::Shaping shaping_;
     AxisValues steps_per_mm_{};
-    std::array<double, 3> origin_mm_{};  // of the motors
+    std::array<double, 3> origin_mm_{};             // of the motors
+    std::array<std::array<bool, 3>, 3> depends_{};  // each motor, on which axes
     std::int64_t lead_ns_ = 0, reach_ns_ = 0;
     std::deque<Piece> pieces_;
     double fed_mm_ = 0, fed_error_mm_ = 0, pressed_mm_ = 0;

@@ -65,7 +65,6 @@ void HeatControl::sample(Channel& channel, double time_s) {
     const Result<double> raw = channel.port.sensor->read();
     Sample sample;
     sample.time_s = time_s;
-    sample.is_converter = settings.sensor.kind != config::SensorKind::celsius;
     sample.target_c = status.target_c;
     sample.power = status.power;
     if (raw) {
@@ -94,20 +93,22 @@ void HeatControl::check_extrusion(const Channel& channel) {
     const double limit_c = std::min(least_c, status.target_c - settings.guard.stray_c);
     if (!may_push || status.temperature_c >= limit_c) return;
     char text[300];
-    std::snprintf(
-        text, sizeof text,
-        "heater tool: %.1f °C, colder than min_extrude_c = %g, though it had reached %g °C: "
-        "look at the heater's wires and supply, and at draughts; all heaters are off and "
-        "stay so until lyrrun is started again",
-        status.temperature_c, least_c, status.target_c);
+    std::snprintf(text, sizeof text,
+                  "heater tool: %.1f °C, colder than heater.tool.min_extrude_c = %g, though it had "
+                  "reached %g °C: "
+                  "look at the heater's wires and supply, and at draughts; all heaters are off and "
+                  "stay so until lyrrun is started again",
+                  status.temperature_c, least_c, status.target_c);
     stop({GuardKind::falling, text});
 }
 
 void HeatControl::control(Channel& channel, double time_s) {
     HeaterStatus& status = channel.status;
     const bool tunes = relay_ && relay_number_ == channel.port.number;
+    const config::Heater& settings = channel.port.settings;
     status.power = tunes ? relay_->update(time_s, status.temperature_c)
-                         : channel.pid.update(status.target_c, status.temperature_c);
+                         : asking_power(channel.pid.update(status.target_c, status.temperature_c),
+                                        settings.max_power, settings.guard, channel.guard);
     // While its sensor gives bad figures, a heater stays off.
     if (channel.guard.bad > 0) status.power = 0;
     status.on_s += status.power * tick_s;

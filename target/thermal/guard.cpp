@@ -40,11 +40,12 @@ std::string bad_text(GuardKind kind, const GuardLimits& limits, const Sample& sa
             return formatted("the sensor reads %g, nothing: a short circuit of its wires", raw);
         case GuardKind::too_cold:
             return formatted(
-                "%.1f °C is below range_c, which begins at %g: look at the sensor and its kind", t,
-                limits.low_c);
+                "%.1f °C is below its range_c, which begins at %g: look at the sensor and its kind",
+                t, limits.low_c);
         case GuardKind::over_temperature:
             return formatted(
-                "%.1f °C is above range_c, which ends at %g: look at the heater's switch, and at "
+                "%.1f °C is above its range_c, which ends at %g: look at the heater's switch, and "
+                "at "
                 "the sensor and its kind",
                 t, limits.high_c);
         default:
@@ -157,17 +158,18 @@ std::optional<Trip> check_off(const std::string& heater, const GuardLimits& limi
 
 std::optional<Trip> check_frozen(const std::string& heater, const GuardLimits& limits,
                                  GuardState& state, const Sample& sample) {
-    const bool watched = sample.is_converter && sample.target_c > 0;
-    if (!watched || state.same_raw != sample.raw) {
+    if (!(sample.target_c > 0) || state.same_raw != sample.raw) {
         state.same_raw = sample.raw;
         state.same_since_s = sample.time_s;
     }
     if (sample.time_s - state.same_since_s < limits.frozen_time_s) return std::nullopt;
     return trip(
         GuardKind::frozen, heater,
-        formatted("the converter has read exactly %g for %g s: it is dead, or its driver is; "
-                  "raise guard.frozen_time_s if it has no noise",
-                  *sample.raw, limits.frozen_time_s));
+        formatted(
+            "the sensor has read exactly %g for %g s, whatever its heater was given: its "
+            "converter is dead, or the kernel's driver is; raise its guard.frozen_time_s if the "
+            "heater is too weak to move it by one step in that time",
+            *sample.raw, limits.frozen_time_s));
 }
 
 }  // namespace
@@ -189,6 +191,18 @@ std::optional<Trip> watch(const std::string& heater, const GuardLimits& limits, 
     if (!found) found = check_frozen(heater, limits, state, sample);
     state.last_time_s = sample.time_s;
     return found;
+}
+
+double asking_power(double wanted, double max_power, const GuardLimits& limits,
+                    const GuardState& state) {
+    const double half_s = limits.frozen_time_s / 2;
+    const double asked_s = state.last_time_s - state.same_since_s - half_s;
+    if (state.phase != Phase::holding || !(asked_s > 0)) return wanted;
+    // Less is safer, but from less than a fifth there is too little to take.
+    constexpr double enough_to_take = 0.2, most_moved = 0.5;
+    const double moved = most_moved * max_power * std::min(1.0, asked_s / half_s);
+    const double asked = wanted < enough_to_take * max_power ? wanted + moved : wanted - moved;
+    return std::clamp(asked, 0.0, max_power);
 }
 
 }  // namespace lyr::thermal

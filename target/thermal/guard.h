@@ -11,8 +11,8 @@
 //  5. stray: once the target was reached, more than stray_c below it for longer than stray_time_s.
 //  6. stuck on: switched off for longer than settle_s, stray_c above the lowest reading since then. That mark
 //     follows upwards by stray_c in stray_time_s: what a neighbour warms slowly is not stuck.
-//  7. frozen: a converter's figure exactly the same for frozen_time_s while there is a target. Sensors of kind
-//     celsius are left out: they have no noise.
+//  7. frozen: a sensor's figure exactly the same for frozen_time_s while there is a target. Only the figure of a
+//     converter that is fine and has noise never stands; asking_power() makes all others move.
 //  Each fires in the first sample for which it is true, within a tick of its condition.
 
 #pragma once
@@ -53,7 +53,6 @@ struct Trip {
 struct Sample {
     double time_s = 0;
     std::optional<double> raw;  // none: the sensor could not be read
-    bool is_converter = true;   // raw is that of a converter, which has noise
     Measured measured;
     double target_c = 0;  // 0: off
     double power = 0;     // that the heater was given up to now
@@ -85,5 +84,11 @@ struct GuardState {
 
 std::optional<Trip> watch(const std::string& heater, const config::GuardLimits& limits,
                           GuardState& state, const Sample& sample);
+
+// The power for a heater whose sensor's figure has been standing for half of frozen_time_s while the target is held: it
+// may be dead, or too coarse to tell what little changes. Less and less than what the controller wants, or more and more
+// where that is next to nothing, until the figure answers; by up to half of max_power.
+double asking_power(double wanted, double max_power, const config::GuardLimits& limits,
+                    const GuardState& state);
 
 }  // namespace lyr::thermal

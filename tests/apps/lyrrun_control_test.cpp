@@ -1,5 +1,7 @@
 // A print that is controlled while it runs: lyrrun without a board, and lyrctl beside it.
 
+#include <termios.h>
+
 #include <nlohmann/json.hpp>
 
 #include "apps/program.h"
@@ -99,6 +101,56 @@ TEST_CASE("lyrrun: a print takes little memory (the locked stacks of its threads
     CHECK(scene.print.end(SIGTERM) == 8);
 }
 #endif
+
+// Where standard error may go that takes nothing: a terminal after Ctrl-S, and a pipe that is full.
+class Silenced {
+public:
+    explicit Silenced(const Folder& folder, bool is_terminal) {
+        if (is_terminal) {
+            far_ = ::posix_openpt(O_RDWR | O_NOCTTY);
+            REQUIRE((far_ >= 0 && ::grantpt(far_) == 0 && ::unlockpt(far_) == 0));
+            name_ = ::ptsname(far_);
+            near_ = ::open(name_.c_str(), O_RDWR | O_NOCTTY);
+            REQUIRE(::tcflow(near_, TCOOFF) == 0);
+            return;
+        }
+        folder.make_pipe("full");
+        name_ = folder / "full";
+        far_ = ::open(name_.c_str(), O_RDONLY | O_NONBLOCK);
+        near_ = ::open(name_.c_str(), O_WRONLY | O_NONBLOCK);
+        while (::write(near_, "x", 1) == 1) continue;
+    }
+    ~Silenced() {
+        ::close(near_);
+        ::close(far_);
+    }
+    Silenced(const Silenced&) = delete;
+    Silenced& operator=(const Silenced&) = delete;
+    const std::string& name() const { return name_; }
+
+private:
+    std::string name_;
+    int near_ = -1, far_ = -1;
+};
+
+TEST_CASE("lyrrun: beside a stopped terminal or a full pipe the last message never ended") {
+    for (const bool is_terminal : {true, false})
+        for (const bool cancels : {false, true}) {
+            CAPTURE(is_terminal);
+            CAPTURE(cancels);
+            const Folder folder("lyrrun-silenced");
+            const Silenced silenced(folder, is_terminal);
+            const Running print(folder, Scene::arguments("silenced", {}), silenced.name());
+            REQUIRE(print.wait_for([&] {
+                return folder.run("lyrctl status --socket s").out.find("printing") !=
+                       std::string::npos;
+            }));
+            if (cancels) CHECK(folder.run("lyrctl cancel --socket s").status == 0);
+            const auto asked = std::chrono::steady_clock::now();
+            CHECK(print.end(cancels ? 0 : SIGTERM) == 8);
+            CHECK(std::chrono::steady_clock::now() - asked < std::chrono::seconds(3));
+        }
+}
 
 TEST_CASE("lyrctl: an emergency stop ends the print at once") {
     const Scene scene("lyrrun-emergency");

@@ -50,7 +50,7 @@ TEST_CASE("lyrrun --jog: from the start of a print, within the ranges") {
     CHECK(good.status == 0);
     CHECK(good.out.find("x 20.000, y 20.000, z 3.500") != std::string::npos);
     check_failure(folder.run("lyrrun --jog x=-11 --simulate --printer p.toml"), "lyrrun", 7,
-                  "x would go to -1 mm, and its range_mm is 0 to 120");
+                  "x would go to -1 mm, and axis.x.range_mm is 0 to 120");
     check_failure(folder.run("lyrrun --jog x=1,x=2 --simulate --printer p.toml"), "lyrrun", 2,
                   "x=10,z=-1");
     const Ended free = Folder("jog").run("lyrrun --jog y=-3 --simulate");

@@ -63,13 +63,44 @@ TEST_CASE("homing keys: slips come with line and suggestion") {
                 "\"as_is\", \"up\", \"down\" or \"none\"");
     check_error("[probe]\ninput = { pull = \"up\" }\n", 2, "expected `line`");
     check_error("[probe]\noffset_mm = [1, 2]\n", 2, "[x, y, z]");
-    check_error("[probe]\nspeed_mm_s = 1\nslow_mm_s = 2\n", 3, "faster than speed_mm_s");
+    check_error("[probe]\nspeed_mm_s = 1\nslow_mm_s = 2\n", 3, "faster than probe.speed_mm_s = 1");
     check_error("[mesh]\nheights_mm = [[0, 1], [2]]\n", 2, "rows");
     check_error("[mesh]\nheights_mm = [[0, 1], [2, 3]]\narea_mm = [0, 0, 9, 9]\n", 2,
                 "2 rows of 2 heights are not the mesh.points = [5, 5]");
     check_error("[mesh]\npoints = [2, 2]\nheights_mm = [[0, 1], [2, 3]]\n", 3, "area_mm");
     check_error("[mesh]\narea_mm = [9, 0, 0, 9]\n", 2, "first corner");
+    const std::string probe = "[probe]\ninput = 9\noffset_mm = [20, -3, 0.7]\n";
+    check_error(probe + "home_mm = [10, 100]\n", 4, "the head would stand at x = -10, y = 103");
+    check_error(probe + "[mesh]\narea_mm = [20, 0, 200, 198]\n", 5,
+                "cannot get to x = 20, y = 198");
+    check_error(
+        "[mesh]\npoints = [2, 2]\narea_mm = [0, 0, 9, 9]\nheights_mm = [[0, 1], [-2, 1]]\n"
+        "fade_mm = 2\n",
+        5, "up to 2 mm off by mesh.heights_mm");
     check_error("[simulate]\nbumps = [[1, 2, 3, 0]]\n", 2, "radius above 0");
+}
+
+TEST_CASE("homing keys: an endstop at the other end, and ways longer than the axis, were taken") {
+    const auto check = [](const std::string& old_text, const std::string& new_text,
+                          const std::string& part) {
+        std::string text = axes;
+        const std::size_t at = text.find(old_text);
+        REQUIRE(at != std::string::npos);
+        const Result<Printer> printer =
+            parse_printer(text.replace(at, old_text.size(), new_text), "p.toml");
+        REQUIRE_FALSE(printer.ok());
+        CHECK_MESSAGE(printer.error().message == part, printer.error().message);
+        CHECK(printer.error().where.line > 0);
+    };
+    check("endstop_mm = 203.5", "endstop_mm = -1",
+          "axis.y.endstop_mm: -1 is at the other end of axis.y.range_mm = [0, 200]; endstop_end = "
+          "\"low\" would have it there");
+    check("endstop = 6", "endstop = 6\nhome_slow_mm_s = 30",
+          "axis.y.home_slow_mm_s: faster than axis.y.home_speed_mm_s = 20");
+    check("range_mm = [0, 200]", "range_mm = [0, 2.5]",
+          "axis.x.home_back_off_mm: longer than all of axis.x.range_mm = [0, 2.5]");
+    check("range_mm = [0, 180]", "range_mm = [0, 4]\nendstop = 7",
+          "axis.z.range_mm: homing.lift_mm = 5 is more than all of axis.z.range_mm = [0, 4]");
 }
 
 TEST_CASE("homing keys: a delta has the endstops of all towers, at the top") {

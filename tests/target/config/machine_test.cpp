@@ -66,6 +66,8 @@ TEST_CASE("printer 7: a delta without its frame, or that does not reach, is refu
     check_error(changed(delta, "reach_mm = 100\n", ""), 2, "delta.reach_mm is missing");
     check_error(changed(delta, "reach_mm = 100", "reach_mm = 125"), 5, "reaches 123.75 mm");
     check_error("start_mm = [90, 60, 0]\n" + delta, 1, "farther from the middle");
+    check_error(changed(delta, "reach_mm", "tower_angle_deg = [210, 330, -20]\nreach_mm"), 5,
+                "two towers are 10 degrees apart");
     check_error(changed(delta, "[120, 121, 122.5]", "[120, 121]"), 4, "a list of three");
     check_error(changed(delta, "[120, 121, 122.5]", "[120, 121, true]"), 4, "from 1 to 10000");
     check_error(changed(delta, "arm_mm", "arms_mm"), 3, "did you mean `arm_mm`?");
@@ -87,9 +89,11 @@ TEST_CASE("machine: shapers and pressure advance, and what they need") {
     CHECK(printer.pressure_advance_s == 0.05);
     CHECK(printer.pressure_smooth_s == 0.04);
     check_error("[shaper.x]\nkind = \"zvd\"\n", 2, "\"mzv\" or \"ei\"");
-    check_error("[shaper.x]\nkind = \"zv\"\n", 2, "needs frequency_hz");
+    check_error("[shaper.x]\nkind = \"zv\"\n", 2, "needs shaper.x.frequency_hz");
     check_error("[shaper.x]\nkind = \"zv\"\nfrequency_hz = 1\n", 3, "from 2 to 500");
     check_error("[shaper.x]\nkind = \"zv\"\nfrequncy_hz = 40\n", 3, "did you mean `frequency_hz`?");
+    check_error("[shaper.y]\nfrequency_hz = 40\n", 1, "does nothing without shaper.y.kind");
+    check_error("[timing]\nlate_us = 5000\n", 2, "later than pulse.late_limit_ms = 5");
     check_error("max_jerk_mm_s3 = 0.5\n", 1, "from 1 on");
     check_error("[shaper.e]\n", 1, "unknown key `e` in [shaper]");
     check_error("[pressure_advance]\nadvance_s = -1\n", 2, "from 0 to 2");

@@ -42,6 +42,7 @@ max_speed_mm_s = 60
 max_acceleration_mm_s2 = 5000
 [heater.tool]
 output = "GPIO9"
+sensor.kind = "table"
 sensor.points = [[0, 9000], [90, 700]]
 [input.pause]
 line = 7 # left

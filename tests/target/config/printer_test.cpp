@@ -168,6 +168,18 @@ TEST_CASE("printer 2: the first error in the file is given, not the first by nam
     check_error(two, 18, "invert");
 }
 
+TEST_CASE("printer: a start or a park place outside of the axes was taken") {
+    check_error(with("[1, 2.5, 0]", "[1, 2.5, -1]"), 2,
+                "start_mm: z = -1 is outside of axis.z.range_mm");
+    check_error(with("[1, 2.5, 0]", "[221, 2.5, 0]"), 2,
+                "x = 221 is outside of axis.x.range_mm = [0, 220]");
+    std::string none = with("start_mm = [1, 2.5, 0]\n", "\n");
+    none.replace(none.find("[0, 220]"), 8, "[5, 220]");
+    check_error(none, 9, "start_mm is [0, 0, 0] where it is not given");
+    check_error(good + "[pause]\npark_mm = [0, -11]\n", 29,
+                "y = -11 is outside of axis.y.range_mm = [-10.5, 220]");
+}
+
 TEST_CASE("printer 3: each axis must have its own figures") {
     check_error(with("steps_per_mm = 80\n", ""), 5, "axis.x.steps_per_mm is missing");
     check_error(with("range_mm = [0, 220]\n", ""), 5, "axis.x.range_mm is missing");
@@ -276,6 +288,14 @@ TEST_CASE("printer 2: what is wrong with heat is told with its key") {
     names("[heater.bed]\nmin_extrude_c = 170\n", "min_extrude_c");
     names("[heater.bed]\nkp = nan\n", "heater.bed.kp");
     names("[heater.bed]\ncycle_s = 0\n", "0.2");
+    names("[heater.tool]\nmin_extrude_c = 271\n", "gets to 270 °C at the most");
+    names("[heater.tool]\nrange_c = [0, 150]\n", "heater.tool.min_extrude_c is 170");
+    names("[heater.bed]\nrange_c = [25, 130]\n", "leaves out a cold heater");
+    names("[heater.bed]\nrange_c = [-10, 20]\n", "to at least 25");
+    names("[heater.bed]\nsensor.beta_k = 3950\n", "heater.bed.sensor.kind = \"beta\"");
+    names("[heater.bed]\nsensor.celsius_per_unit = 1\n", "\"celsius\"");
+    names("[heater.bed]\nsensor.points = [[0, 100], [50, 10]]\n",
+          "\"steinhart_hart\" or \"table\"");
     names("[heater.tool]\nsensor.kind = \"steinhart_hart\"\n", "needs 3 points");
     names("[heater.tool]\nsensor.kind = \"table\"\n", "at least 2");
     names("[heater.tool]\nsensor.points = [[0, 100], [50, 100]]\n", "resistances falling");

@@ -51,8 +51,9 @@ struct Bench {
 };
 
 JournalEntry entry_of(std::uint32_t layer) {
-    JournalEntry entry{{1'234'567'890'123, 0xdeadbeef}, layer, 400, layer * 7'000'000'000, {}};
-    if (layer % 3 == 0) entry.parked_nm = 40'000'000 + layer;
+    JournalEntry entry{{1'234'567'890'123, 0xdeadbeef}, layer, 400, layer * 7'000'000'000, {}, {}};
+    if (layer % 3 == 0) entry.rest_nm = 40'000'000 + layer;
+    if (layer % 3 == 1) entry.place_um = {-12'345 - static_cast<std::int32_t>(layer), 250'000};
     return entry;
 }
 

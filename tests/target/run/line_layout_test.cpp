@@ -23,7 +23,7 @@ TEST_CASE("layout 1, 2: steps and directions by axis, then the enable lines that
     REQUIRE(requests.ok());
     REQUIRE(requests->size() == layout.names.size());
     for (std::size_t i = 0; i < layout.names.size(); ++i)
-        CHECK((*requests)[i].purpose == layout.names[i]);
+        CHECK((*requests)[i].purpose == "axis." + layout.names[i]);
     // y is inverted, and enable is active low.
     CHECK((*requests)[3].active_low);
     CHECK_FALSE((*requests)[1].active_low);

@@ -49,10 +49,11 @@ double end_mm(const SimulationReport& report, std::size_t axis) {
 }
 
 void write_entry(const std::string& file, std::uint32_t layer,
-                 std::optional<std::int64_t> parked_nm = {}) {
+                 std::optional<std::int64_t> rest_nm = {},
+                 std::optional<std::array<std::int32_t, 2>> place_um = {}) {
     Result<Journal> journal = Journal::open(file + ".journal");
     REQUIRE(journal.ok());
-    REQUIRE(journal->write({*identity_of(file), layer, 6, 5'000'000'000, parked_nm}).ok());
+    REQUIRE(journal->write({*identity_of(file), layer, 6, 5'000'000'000, rest_nm, place_um}).ok());
 }
 
 }  // namespace
@@ -110,12 +111,66 @@ TEST_CASE(
     REQUIRE(crooked.ok());
     CHECK(crooked->stopped_z_mm ==
           doctest::Approx(flat->stopped_z_mm + slope * (flat->state.start_x_mm - 150)));
+    // Where it was in the layer is noted.
+    write_entry(file, 2, {}, std::array<std::int32_t, 2>{120'000, 45'500});
+    const Result<Resumption> within = find_resumption(printer, file);
+    REQUIRE(within.ok());
+    CHECK(within->stopped_z_mm == doctest::Approx(flat->stopped_z_mm + slope * (120 - 150)));
     // Where it was parked its height is known, and counts from start_mm already.
     write_entry(file, 2, 6'500'000);
     const Result<Resumption> parked = find_resumption(printer, file);
     REQUIRE(parked.ok());
     CHECK(parked->stopped_z_mm == doctest::Approx(6.5));
     std::filesystem::remove(file + ".journal");
+}
+
+// A line of 3 mm in 1.5 s over a bed that rises by 0.02 mm for each mm: 24 steps of z.
+TEST_CASE(
+    "resumption 4: a print cut in the middle of a layer over a bed mesh was off by the bed's") {
+    config::Printer printer = patient_printer();
+    printer.mesh.area_mm = {0, 0, 200, 200};
+    printer.mesh.heights_mm = {{0, 4}, {0, 4}};
+    const std::string file = write_print("cut", {[](const Pen& pen) {
+                                             pen.path(2);
+                                             pen.line(3, 0);
+                                         }});
+    const std::string journal = file + ".journal";
+    std::filesystem::remove(journal);
+    gpio::MonotonicClock clock;
+    std::vector<gpio::LineWrite> writes;
+    gpio::MockChip chip(line_count, clock, gpio::recorder(writes));
+    PrintControl control;
+    // What a cut of the power leaves behind.
+    std::optional<JournalEntry> cut;
+    PrintJob job{file, printer, false, [&](const Progress&) {
+                     const auto entry = read_journal(journal);
+                     if (!entry.ok() || !*entry || !(*entry)->place_um || cut) return;
+                     if ((*(*entry)->place_um)[0] < 35'500) return;  // it begins at 35 mm
+                     cut = **entry;
+                     std::raise(SIGTERM);
+                 }};
+    job.control = &control;
+    job.journal = journal;
+    REQUIRE_FALSE(print(job, chip, clock).ok());
+    REQUIRE(cut);
+    CHECK(cut->layer == 1);
+    std::int64_t z_steps = 0;
+    gpio::LineMask before = 0;
+    for (const gpio::LineWrite& write : writes) {
+        if (~before & write.levels & step_bit(config::axis_z))
+            z_steps += (write.levels & direction_bit(config::axis_z)) != 0 ? 1 : -1;
+        before = write.levels;
+    }
+    const double z_mm = static_cast<double>(z_steps) / printer.axes[config::axis_z].steps_per_mm;
+    const Result<Resumption> found = find_resumption(printer, file);
+    REQUIRE(found.ok());
+    CHECK(found->entry.rest_nm.has_value());
+    CHECK(found->stopped_z_mm == doctest::Approx(printer.start_mm[2] + z_mm));
+    const double gone_mm = std::hypot((*cut->place_um)[0] / 1e3 - found->state.start_x_mm,
+                                      (*cut->place_um)[1] / 1e3 - found->state.start_y_mm);
+    CHECK(gone_mm > 0.5);
+    CHECK(gone_mm < 3);
+    std::filesystem::remove(journal);
 }
 
 TEST_CASE("resumption 2: no journal, or another file, is refused") {

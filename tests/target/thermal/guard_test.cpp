@@ -24,7 +24,6 @@ using Curve = std::function<double(double time_s)>;
 struct Watched {
     config::GuardLimits limits = config::default_heater(config::heater_tool).guard;
     double target_c = 200, power = 1;
-    bool is_converter = true;
     // A converter's figure changes from tick to tick.
     bool noisy = true;
 };
@@ -34,9 +33,11 @@ std::optional<Fired> fired(const Watched& watched, const Curve& temperature_c, d
     for (int tick = 0; tick * tick_s <= until_s; ++tick) {
         const double time_s = tick * tick_s;
         const double noise = watched.noisy ? 0.01 * (tick % 2) : 0;
-        Sample sample{
-            time_s,           2'000 + noise, watched.is_converter, {temperature_c(time_s) + noise},
-            watched.target_c, watched.power};
+        Sample sample{time_s,
+                      2'000 + noise,
+                      {temperature_c(time_s) + noise},
+                      watched.target_c,
+                      watched.power};
         if (const auto trip = watch("tool", watched.limits, state, sample)) {
             CHECK(trip->message.starts_with("heater tool: "));
             return Fired{trip->kind, time_s};
@@ -152,7 +153,7 @@ TEST_CASE("guard 6: rising while off, but neither the lag nor a warm neighbour")
         on, [](double t) { return 25 + 0.5 * t; }, 60));
 }
 
-TEST_CASE("guard 7: a figure that never changes, where it is a converter's") {
+TEST_CASE("guard 7: a figure that never changes while there is a target") {
     Watched watched;
     watched.noisy = false;
     const auto still = [](double) { return 199.0; };
@@ -160,9 +161,31 @@ TEST_CASE("guard 7: a figure that never changes, where it is a converter's") {
     REQUIRE(frozen);
     CHECK(frozen->kind == GuardKind::frozen);
     CHECK(frozen->time_s == doctest::Approx(20));
-    watched.is_converter = false;
-    CHECK_FALSE(fired(watched, still, 300));
-    watched.is_converter = true;
     watched.target_c = 0;
     CHECK_FALSE(fired(watched, still, 300));
+}
+
+TEST_CASE("guard 7: a standing figure is asked with half of the power at the most, and only then") {
+    const config::GuardLimits limits;
+    GuardState state;
+    state.phase = Phase::holding;
+    const auto power = [&](double wanted, double stands_s) {
+        state.last_time_s = state.same_since_s + stands_s;
+        return asking_power(wanted, 0.8, limits, state);
+    };
+    for (const double wanted : {0.0, 0.1, 0.3, 0.5, 0.8}) {
+        CHECK(power(wanted, limits.frozen_time_s / 2) == wanted);
+        double before = 0;
+        for (double stands_s = 10.1; stands_s <= limits.frozen_time_s; stands_s += 0.1) {
+            const double asked = power(wanted, stands_s), moved = std::abs(asked - wanted);
+            CHECK(asked >= 0);
+            CHECK(asked <= 0.8);
+            CHECK(moved >= before);
+            CHECK(moved <= 0.4 + 1e-9);
+            before = moved;
+        }
+        CHECK(before >= std::min(0.3, wanted < 0.16 ? 0.4 : wanted));
+    }
+    state.phase = Phase::heating;
+    CHECK(power(0.8, 19) == 0.8);
 }
