@@ -229,7 +229,7 @@ void add_travel(std::vector<Key>& keys) {
             "retract_before_wipe", &Travel::retract_before_wipe, part,
             "How much of a retraction comes before the wipe; more where the wipe is too short "
             "for the rest")
-        .number("z_hop", &Travel::z_hop_mm, mm, {0, 10}, "How far it is raised; 0: not")
+        .number("z_hop", &Travel::z_hop_mm, mm, {0, 10}, "How far the nozzle is raised where it retracts; 0: not")
         .flag("avoid_crossing", &Travel::avoid_crossing, "Travel around walls where that is near");
 }
 

@@ -57,7 +57,9 @@ public:
         for (const Copy& copy : layer_.copies) append(copy);
         const auto wiped_to = retracts() ? draw_back() : std::nullopt;
         const Point2 end = wiped_to.value_or(head_.value_or(corner()));
-        if (layer_.lift_mm > 0) travel_to(end, layer_.span.top_mm + layer_.lift_mm);
+        // From here the head goes straight to where the next layer begins.
+        const double lift_mm = std::max(layer_.lift_mm, retracts() ? profile_.travel.z_hop_mm : 0);
+        if (lift_mm > 0) travel_to(end, layer_.span.top_mm + lift_mm);
         return encoder_.finish();
     }
 
