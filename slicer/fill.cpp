@@ -169,6 +169,8 @@ public:
 
 private:
     void append(Region region, format::Role role, InfillPattern pattern, double angle_rad) {
+        const auto wide = without_narrow(region);
+        if (wide) region = *wide;
         const std::size_t first = fill.pieces.size();
         append(lines(region, {.pattern = pattern,
                               .density = 1,
@@ -176,6 +178,26 @@ private:
                               .angle_rad = angle_rad}),
                role);
         balance(first, region, profile_.skin.width_mm);
+    }
+
+    // Where no wall as wide as a line would fit into the region, neither do parallel lines: that is filled along its middle.
+    // Gives the rest, if there is anything of the kind.
+    std::optional<std::vector<Contour>> without_narrow(Region region) {
+        if (!is_solid(profile_) || !profile_.perimeters.gap_fill || region.empty())
+            return std::nullopt;
+        const double spacing_mm = line_spacing_mm(profile_.skin.width_mm, span_.height_mm());
+        const Walls lines = walls(region, {.count = 1,
+                                           .width_mm = spacing_mm,
+                                           .overlap = 0,
+                                           .min_width_mm = profile_.perimeters.min_gap_mm,
+                                           .gap_fill = false,
+                                           .allowed_mm = allowed_mm_});
+        if (lines.thin.empty()) return std::nullopt;
+        narrow(lines.thin, lines.thin_joints, format::Role::gap_fill,
+               profile_.perimeters.min_gap_mm, flank_mm());
+        std::vector<Contour> middles;
+        for (const Strand& strand : lines.strands) middles.push_back(strand.path);
+        return offset(middles, {.distance_mm = spacing_mm / 2, .allowed_mm = allowed_mm_}).contours;
     }
 
     void append(Fill lines, format::Role role) {

@@ -27,9 +27,10 @@ constexpr double least_space_share = 0.75;
 // Area that is filled twice or not at all and not looked into, of a wall of a layer: a square of this edge.
 constexpr double unseen_mm = 0.25;
 
-// Corners as sharp as two fifths of a radian are wide enough: beyond, a nozzle cannot tell the tip from a line.
-constexpr double mitre_limit = 5;
-const double bluntest_tip_cosine = -std::cos(2 * std::asin(1 / mitre_limit));
+// In half widths of a line, how far a corner's tip may be from the middle of the line around it, which reaches but one:
+// corners of less than 39 degrees are narrow at their tips. Between walls of a part that is sparse inside anyway, of less
+// than 23 degrees.
+constexpr double mitre_limit = 3, sparse_mitre_limit = 5;
 
 // By how much parts that are wide enough are cut wider than they are, so that their own boundary is left as it is; a
 // share of the width.
@@ -78,6 +79,10 @@ private:
         return depth == 0 ? 0 : middle - spacing_mm_ / 2;
     }
 
+    double limit(std::uint32_t depth) const {
+        return depth == 0 || request_.solid ? mitre_limit : sparse_mitre_limit;
+    }
+
     // What lies that deep, made when it is asked for. Stays where it is.
     const std::vector<Contour>& inner(std::uint32_t depth) {
         std::optional<std::vector<Contour>>& found = inner_[depth];
@@ -90,9 +95,13 @@ private:
         return depth == 0 ? request_.width_mm / 2 : spacing_mm_ / 2;
     }
 
-    // What the walls before leave.
-    std::vector<Contour> outer(std::uint32_t depth) {
-        return depth == 0 ? base_ : shrunk(middle_mm(depth) - outwards_mm(depth));
+    // What the walls before leave. Stays where it is until another depth's is asked for.
+    const std::vector<Contour>& outer(std::uint32_t depth) {
+        if (depth == 0) return base_;
+        if (!outer_ || outer_depth_ != depth)
+            outer_ = shrunk(middle_mm(depth) - outwards_mm(depth));
+        outer_depth_ = depth;
+        return *outer_;
     }
 
     // Whether the wall needs no narrow parts taken off it, or none are to be.
@@ -100,8 +109,8 @@ private:
         if (!(depth == 0 ? request_.thin_walls : request_.gap_fill)) return true;
         const std::vector<Contour>& before = depth == 0 ? base_ : inner(depth - 1);
         const double before_mm = depth == 0 ? 0 : middle_mm(depth - 1);
-        const bool reaches =
-            is_even(before, inner(depth), middle_mm(depth) - before_mm) && !has_sharp_tip(before);
+        const bool reaches = is_even(before, inner(depth), middle_mm(depth) - before_mm) &&
+                             !has_sharp_tip(before, limit(depth));
         if (reaches &&
             is_even(inner(depth), inner(depth + 1), middle_mm(depth + 1) - middle_mm(depth)))
             return true;
@@ -155,8 +164,9 @@ private:
     }
 
     // Of the direction before and behind the corners to the left. Smooth ones cost a comparison.
-    static bool has_sharp_tip(Region region) {
-        return std::any_of(region.begin(), region.end(), [](const Contour& contour) {
+    static bool has_sharp_tip(Region region, double limit) {
+        const double bluntest_cosine = -std::cos(2 * std::asin(1 / limit));
+        return std::any_of(region.begin(), region.end(), [&](const Contour& contour) {
             const auto* path = std::get_if<Path>(&contour);
             if (!path || path->segments.empty()) return false;
             const std::size_t count = path->segments.size();
@@ -165,8 +175,7 @@ private:
                                          path->segments.back());
             for (const Segment& segment : path->segments) {
                 const Vector2 after = start_tangent(from, segment);
-                if (before.dot(after) < bluntest_tip_cosine && cross(before, after) > 0)
-                    return true;
+                if (before.dot(after) < bluntest_cosine && cross(before, after) > 0) return true;
                 before = end_tangent(from, segment);
                 from = segment.end;
             }
@@ -176,7 +185,7 @@ private:
 
     // Whether the wall's sides are near each other along more than is left alone.
     bool is_narrow(std::uint32_t depth) {
-        return narrow_mm2(Boundary(inner(depth)), least_space_share * spacing_mm_, mitre_limit) >
+        return narrow_mm2(Boundary(inner(depth)), least_space_share * spacing_mm_, limit(depth)) >
                unseen_mm * unseen_mm;
     }
 
@@ -185,7 +194,7 @@ private:
         const double flank_mm = outwards_mm(depth);
         const double reached_mm2 =
             area_mm2(inner(depth)) +
-            strip_mm2(Boundary(inner(depth)), flank_mm, mitre_limit * flank_mm);
+            strip_mm2(Boundary(inner(depth)), flank_mm, limit(depth) * flank_mm);
         return area_mm2(outside) - reached_mm2;
     }
 
@@ -196,12 +205,12 @@ private:
     }
 
     std::vector<Contour> offset_by(const BoundedRegion& region, double distance_mm, Corner corner,
-                                   const CornersOf* mitred = nullptr) {
+                                   double limit = mitre_limit, const CornersOf* mitred = nullptr) {
         if (region.contours.empty()) return {};
         OffsetResult result = offset(region, {.distance_mm = distance_mm,
                                               .allowed_mm = request_.allowed_mm,
                                               .corner = corner,
-                                              .mitre_limit = mitre_limit,
+                                              .mitre_limit = limit,
                                               .mitred = mitred});
         walls_.second_method += result.second_method;
         walls_.unresolved += result.unresolved.has_value();
@@ -224,7 +233,7 @@ private:
     std::vector<Contour> grown(Region inner, std::uint32_t depth, double inside_mm,
                                double distance_mm) {
         const CornersOf corners{bounded().boundary, inside_mm - base_mm_};
-        return offset_by(BoundedRegion(inner), distance_mm, Corner::mitre,
+        return offset_by(BoundedRegion(inner), distance_mm, Corner::mitre, limit(depth),
                          depth == 0 ? &corners : nullptr);
     }
 
@@ -233,6 +242,7 @@ private:
         base_ = std::move(wall);
         base_mm_ = middle_mm(depth);
         bounded_.reset();
+        outer_.reset();
         std::fill(inner_.begin() + depth, inner_.end(), std::nullopt);
     }
 
@@ -318,7 +328,7 @@ private:
     // Takes off a wall where its opposite sides are too near each other, and lists what it does not cover. Whether something
     // is left out that is too narrow for a line.
     bool separate_narrow(std::uint32_t depth) {
-        const std::vector<Contour> outside = outer(depth);
+        const std::vector<Contour>& outside = outer(depth);
         std::vector<Contour> wall = inner(depth);
         std::vector<Contour> wide = with_short_necks(wall, wide_parts(wall, depth));
         const bool is_cut = wide.size() < wall.size() || !goes_around(outside, wall, depth) ||
@@ -377,7 +387,8 @@ private:
         const std::vector<Contour> fit = offset_by(bounded_rest, -half_mm, Corner::round);
         const CornersOf corners{bounded_rest.boundary, half_mm};
         const std::vector<Contour> opened =
-            offset_by(BoundedRegion(fit), half_mm, Corner::mitre, depth == 0 ? &corners : nullptr);
+            offset_by(BoundedRegion(fit), half_mm, Corner::mitre, limit(depth),
+                      depth == 0 ? &corners : nullptr);
         const std::vector<Contour> narrow =
             opened.empty() ? opened : operated(opened, rest, Operation::intersect);
         const double left_out_mm2 = area_mm2(rest) - area_mm2(narrow);
@@ -422,6 +433,8 @@ private:
     double spacing_mm_;
     std::uint32_t fitted_ = 0;  // the walls outside of this depth need not be fitted again
     std::vector<std::optional<std::vector<Contour>>> inner_;  // by depth
+    std::optional<std::vector<Contour>> outer_;               // of that depth
+    std::uint32_t outer_depth_ = 0;
     Walls walls_;
 };
 
