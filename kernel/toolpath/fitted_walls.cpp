@@ -86,6 +86,10 @@ public:
 
 private:
     void add_runs(const BoundaryPiece& piece, std::vector<Run>& runs) const {
+        if (is_alone(piece)) {
+            runs.push_back({&piece, 0, 1, 0});
+            return;
+        }
         const double steps = std::ceil(piece.length_mm / (look_share * width_mm_));
         const std::size_t first = runs.size();
         for (double k = 0; k < steps; ++k) {
@@ -96,6 +100,22 @@ private:
                 runs.push_back({&piece, k / steps, (k + 1) / steps, slack});
             }
         }
+    }
+
+    // Whether surely nothing that runs the opposite way is near.
+    bool is_alone(const BoundaryPiece& piece) const {
+        if (turns_far(piece)) return false;
+        const Vector2 margin(request_.greatest_mm, request_.greatest_mm);
+        const region::Box2 box = piece.box();
+        return !boundary_.any({box.min() - margin, box.max() + margin}, [&](std::uint32_t i) {
+            const BoundaryPiece& other = boundary_.pieces()[i];
+            return turns_far(other) || other.middle_tangent.dot(piece.middle_tangent) < 0;
+        });
+    }
+
+    // By so much that its middle says little of its ends.
+    static bool turns_far(const BoundaryPiece& piece) {
+        return std::abs(piece.curvature_per_mm) * piece.length_mm > 1;
     }
 
     static bool is_one(double a_mm, double b_mm) {

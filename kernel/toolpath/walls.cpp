@@ -64,7 +64,7 @@ public:
             // Further in there is nothing either.
             if (inner(depth).empty()) return std::move(walls_);
             add(inner(depth), depth);
-            if (loses_strip(depth)) fit(depth);
+            if (request_.gap_fill && is_beside_itself_) fit(depth);
         }
         walls_.inside = inner(request_.count);
         if (request_.gap_fill && request_.count > 0) fill_strips();
@@ -106,14 +106,17 @@ private:
 
     // Whether the wall needs no narrow parts taken off it, or none are to be.
     bool is_whole(std::uint32_t depth) {
+        is_beside_itself_ = true;
         if (!(depth == 0 ? request_.thin_walls : request_.gap_fill)) return true;
         const std::vector<Contour>& before = depth == 0 ? base_ : inner(depth - 1);
         const double before_mm = depth == 0 ? 0 : middle_mm(depth - 1);
         const bool reaches = is_even(before, inner(depth), middle_mm(depth) - before_mm) &&
                              !has_sharp_tip(before, limit(depth));
         if (reaches &&
-            is_even(inner(depth), inner(depth + 1), middle_mm(depth + 1) - middle_mm(depth)))
+            is_even(inner(depth), inner(depth + 1), middle_mm(depth + 1) - middle_mm(depth))) {
+            is_beside_itself_ = false;
             return true;
+        }
         return !is_small(inner(depth)) && !is_narrow(depth) &&
                (reaches || is_reached(outer(depth), depth));
     }
@@ -185,17 +188,27 @@ private:
 
     // Whether the wall's sides are near each other along more than is left alone.
     bool is_narrow(std::uint32_t depth) {
-        return narrow_mm2(Boundary(inner(depth)), least_space_share * spacing_mm_, limit(depth)) >
-               unseen_mm * unseen_mm;
+        const Boundary boundary(inner(depth));
+        const auto between_mm2 = [&](double apart_mm) {
+            return narrow_mm2(boundary, apart_mm, limit(depth));
+        };
+        // Of what lies between them, a third is filled twice at most.
+        const double beside_mm2 = between_mm2(most_apart_mm());
+        is_beside_itself_ = beside_mm2 > 3 * unseen_mm * unseen_mm;
+        return beside_mm2 > unseen_mm * unseen_mm &&
+               between_mm2(least_space_share * spacing_mm_) > unseen_mm * unseen_mm;
     }
 
-    // How much of what the walls before leave is outside of the wall, as it is, and its flank.
+    // How much of a region is outside of what lies within it and a flank around that.
+    static double unreached_mm2(Region outside, Region within, double flank_mm, double mitred_mm) {
+        return area_mm2(outside) - area_mm2(within) -
+               strip_mm2(Boundary(within), flank_mm, mitred_mm);
+    }
+
+    // The same of what the walls before leave, and the wall as it is.
     double unreached_mm2(Region outside, std::uint32_t depth) {
         const double flank_mm = outwards_mm(depth);
-        const double reached_mm2 =
-            area_mm2(inner(depth)) +
-            strip_mm2(Boundary(inner(depth)), flank_mm, limit(depth) * flank_mm);
-        return area_mm2(outside) - reached_mm2;
+        return unreached_mm2(outside, inner(depth), flank_mm, limit(depth) * flank_mm);
     }
 
     // What has no wall at all may be small, and still is a part that would be missed.
@@ -293,12 +306,6 @@ private:
                            [&](const auto& part) { return is_strip(part, width_mm); });
     }
 
-    // Whether a part of the wall is but two walls side by side, and nothing is further in.
-    bool loses_strip(std::uint32_t depth) {
-        return request_.gap_fill && inner(depth + 1).size() < inner(depth).size() &&
-               has_strip(inner(depth), most_apart_mm());
-    }
-
     // What the innermost walls leave and is no wider than a line: these are made wider, or it is a gap.
     void fill_strips() {
         if (!has_strip(walls_.inside, spacing_mm_)) return;
@@ -330,8 +337,10 @@ private:
     bool separate_narrow(std::uint32_t depth) {
         const std::vector<Contour>& outside = outer(depth);
         std::vector<Contour> wall = inner(depth);
-        std::vector<Contour> wide = with_short_necks(wall, wide_parts(wall, depth));
-        const bool is_cut = wide.size() < wall.size() || !goes_around(outside, wall, depth) ||
+        const bool is_around = goes_around(outside, wall, depth);
+        std::vector<Contour> wide =
+            with_short_necks(wall, wide_parts(wall, depth, depth > 0 || is_around));
+        const bool is_cut = wide.size() < wall.size() || !is_around ||
                             area_mm2(wall) - area_mm2(wide) > unseen_mm * unseen_mm;
         if (!is_cut && is_reached(outside, depth)) return false;
         if (is_cut) wall = std::move(wide);
@@ -348,12 +357,17 @@ private:
     }
 
     // The parts of a wall whose opposite sides are far enough from each other.
-    std::vector<Contour> wide_parts(Region wall, std::uint32_t depth) {
+    std::vector<Contour> wide_parts(Region wall, std::uint32_t depth, bool may_be_all) {
         const double half_mm = least_space_share * spacing_mm_ / 2;
         const double margin_mm = cut_margin_share * request_.width_mm;
         const double inside_mm = middle_mm(depth) + half_mm;
-        const std::vector<Contour> wide =
-            grown(shrunk(inside_mm), depth, inside_mm, half_mm + margin_mm);
+        const std::vector<Contour> core = shrunk(inside_mm);
+        // Of outermost walls not all corners are mitred.
+        const double mitred_mm = depth == 0 ? 0 : limit(depth) * half_mm;
+        if (may_be_all && has_same_parts(wall, core) &&
+            unreached_mm2(wall, core, half_mm, mitred_mm) <= unseen_mm * unseen_mm)
+            return {wall.begin(), wall.end()};
+        const std::vector<Contour> wide = grown(core, depth, inside_mm, half_mm + margin_mm);
         if (wide.empty()) return {};
         return operated(wall, wide, Operation::intersect);
     }
@@ -431,7 +445,8 @@ private:
     double base_mm_ = 0;
     std::optional<BoundedRegion> bounded_;
     double spacing_mm_;
-    std::uint32_t fitted_ = 0;  // the walls outside of this depth need not be fitted again
+    bool is_beside_itself_ = false;  // the wall that was looked at last has sides side by side
+    std::uint32_t fitted_ = 0;       // the walls outside of this depth need not be fitted again
     std::vector<std::optional<std::vector<Contour>>> inner_;  // by depth
     std::optional<std::vector<Contour>> outer_;               // of that depth
     std::uint32_t outer_depth_ = 0;

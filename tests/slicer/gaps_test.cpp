@@ -148,3 +148,21 @@ TEST_CASE(
         }
     }
 }
+
+TEST_CASE(
+    "gaps: walls beside each other in ribs were not fitted to these where the part is wide "
+    "elsewhere") {
+    for (const double rib_mm : {0.76, 0.8, 0.86, 0.9, 0.94, 1.6, 1.7}) {
+        CAPTURE(rib_mm);
+        Contours comb{rectangle(0, 0, 12, 3)};
+        for (int tooth = 0; tooth < 5; ++tooth)
+            comb = combined(comb, Contours{rectangle(2.5 * tooth, 2, 2.5 * tooth + rib_mm, 10)},
+                            Operation::unite, 1e-3)
+                       .contours;
+        for (const Motion& motion : motions) {
+            const PrintedLayer print = printed_solid(lyr::testing::moved(comb, motion));
+            CHECK(covered_share_of(print, print.layer.outline) >= 0.99);
+            CHECK(laid_share_of(print) == doctest::Approx(1).epsilon(0.01));
+        }
+    }
+}
