@@ -157,17 +157,18 @@ Strand strand_of(const std::vector<Run>& runs, double width_mm) {
     Path path{meetings.back().start, {}};
     Strand strand{.path = {}, .width_mm = width_mm + first.slack_mm / 2};
     Point2 at = path.start;
-    const auto add = [&](const Segment& segment, const Run& run) {
+    const auto add = [&](const Segment& segment, double slack_mm) {
         if (segment.end == at) return;
         path.segments.push_back(segment);
-        strand.widths_mm.push_back(width_mm + run.slack_mm / 2);
+        strand.widths_mm.push_back(width_mm + slack_mm / 2);
         at = segment.end;
     };
     for (std::size_t i = 0; i < runs.size(); ++i) {
         const Point2& end = meetings[i].end;
         const double sweep = runs[i].sweep_rad();
-        add(sweep == 0 ? Segment{end} : arc_with_sweep(at, end, sweep), runs[i]);
-        add({meetings[i].start}, runs[i]);
+        add(sweep == 0 ? Segment{end} : arc_with_sweep(at, end, sweep), runs[i].slack_mm);
+        // A step is as narrow as what is narrower: there the outer flank is nearer.
+        add({meetings[i].start}, std::min(runs[i].slack_mm, runs[(i + 1) % runs.size()].slack_mm));
     }
     strand.path = std::move(path);
     return strand;

@@ -328,7 +328,8 @@ private:
                              .subspan(static_cast<std::size_t>(first - walls_.depths.begin()),
                                       static_cast<std::size_t>(last - first)),
                          {.spacing_mm = spacing_mm_,
-                          .least_mm = least_space_share * spacing_mm_,
+                          // Nearer than what is cut are walls in short necks only.
+                          .least_mm = spacing_mm_ - 2 * (request_.width_mm - request_.min_width_mm),
                           .greatest_mm = most_apart_mm()});
     }
 
