@@ -169,6 +169,7 @@ public:
 
 private:
     void append(Region region, format::Role role, InfillPattern pattern, double angle_rad) {
+        if (pattern == InfillPattern::concentric) return append_rings(region, role);
         const auto wide = without_narrow(region);
         if (wide) region = *wide;
         const std::size_t first = fill.pieces.size();
@@ -180,24 +181,51 @@ private:
         balance(first, region, profile_.skin.width_mm);
     }
 
+    double spacing_mm() const { return line_spacing_mm(profile_.skin.width_mm, span_.height_mm()); }
+
+    // Walls that fill the region as lines do, the outermost with its flank on the boundary.
+    Walls rings(Region region, std::uint32_t count) const {
+        const bool fills = profile_.perimeters.gap_fill;
+        return walls(region, {.count = count,
+                              .width_mm = spacing_mm(),
+                              .overlap = 0,
+                              .min_width_mm = profile_.perimeters.min_gap_mm,
+                              .min_gap_mm = profile_.perimeters.min_gap_mm,
+                              .thin_walls = fills,
+                              .gap_fill = fills && count > 1,
+                              .allowed_mm = allowed_mm_});
+    }
+
     // Where no wall as wide as a line would fit into the region, neither do parallel lines: that is filled along its middle.
     // Gives the rest, if there is anything of the kind.
     std::optional<std::vector<Contour>> without_narrow(Region region) {
-        if (!is_solid(profile_) || !profile_.perimeters.gap_fill || region.empty())
-            return std::nullopt;
-        const double spacing_mm = line_spacing_mm(profile_.skin.width_mm, span_.height_mm());
-        const Walls lines = walls(region, {.count = 1,
-                                           .width_mm = spacing_mm,
-                                           .overlap = 0,
-                                           .min_width_mm = profile_.perimeters.min_gap_mm,
-                                           .gap_fill = false,
-                                           .allowed_mm = allowed_mm_});
+        if (!is_solid(profile_) || region.empty()) return std::nullopt;
+        const Walls lines = rings(region, 1);
         if (lines.thin.empty()) return std::nullopt;
         narrow(lines.thin, lines.thin_joints, format::Role::gap_fill,
                profile_.perimeters.min_gap_mm, flank_mm());
         std::vector<Contour> middles;
         for (const Strand& strand : lines.strands) middles.push_back(strand.path);
-        return offset(middles, {.distance_mm = spacing_mm / 2, .allowed_mm = allowed_mm_}).contours;
+        return offset(middles, {.distance_mm = spacing_mm() / 2, .allowed_mm = allowed_mm_})
+            .contours;
+    }
+
+    void append_rings(Region region, format::Role role) {
+        region::Box2 box;
+        for (const Contour& contour : region) box.extend(region::box_of(contour));
+        if (box.isEmpty()) return;
+        const double most = box.sizes().minCoeff() / 2 / spacing_mm();
+        Walls made = rings(region, static_cast<std::uint32_t>(most) + 2);
+        fill.unresolved += made.unresolved;
+        const double lap_mm = profile_.skin.width_mm - spacing_mm();
+        for (Strand& strand : made.strands) {
+            strand.width_mm += lap_mm;
+            for (double& width : strand.widths_mm) width += lap_mm;
+            fill.pieces.push_back({role, std::move(strand)});
+        }
+        const double least_mm = profile_.perimeters.min_gap_mm;
+        narrow(made.thin, made.thin_joints, format::Role::gap_fill, least_mm, flank_mm());
+        narrow(made.gaps, made.gap_joints, format::Role::gap_fill, least_mm, flank_mm());
     }
 
     void append(Fill lines, format::Role role) {

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "kernel/toolpath/fills.h"
+#include "slicer/balance.h"
 #include "slicer/fill.h"
 
 using namespace lyr;
@@ -204,4 +205,25 @@ TEST_CASE("gaps: two walls that go through a short neck lay over each other ther
             CHECK(outside_mm(print) < 0.02);
         }
     }
+}
+
+TEST_CASE("gaps: rings of solid fill left their middle open") {
+    Options options;
+    options.profile.infill.density = 1;
+    options.profile.skin.pattern = profile::SkinPattern::concentric;
+    const Contours shapes[] = {{rectangle(0, 0, 12, 9.1)},
+                               {FullCircle{{0, 0}, 5, true}},
+                               {FullCircle{{0, 0}, 6, true}, FullCircle{{1, 0}, 1.7, false}},
+                               {Path{{0, 0}, {{{12, 0}}, {{3, 9}}, {{0, 0}}}}},
+                               combined(Contours{rectangle(0, 0, 12, 4)},
+                                        Contours{rectangle(3, 0, 8.3, 11)}, Operation::unite, 1e-3)
+                                   .contours};
+    for (const Contours& shape : shapes)
+        for (const Motion& motion : motions) {
+            PrintedLayer print = printed(lyr::testing::moved(shape, motion), options);
+            print.layer.printed = figures_of(print.layer.outline);
+            CHECK(covered_share_of(print, print.layer.outline) >= 0.99);
+            CHECK(laid_share_of(print) == doctest::Approx(1).epsilon(0.01));
+            CHECK(!imbalance_of(print.layer, print.fill, span, options.profile));
+        }
 }
