@@ -49,6 +49,9 @@ InfillPattern kernel_pattern(profile::SkinPattern pattern) {
 // How far the flow of solid fill may be off one.
 constexpr double least_flow = 0.8, most_flow = 1.1;
 
+// Of parts that are filled with rings in place of parallel lines.
+constexpr double widest_strip_lines = 3;
+
 double radians(double degrees) {
     return degrees * std::numbers::pi / 180;
 }
@@ -94,8 +97,15 @@ public:
           allowed_mm_(options.tolerance().unite_mm()) {}
 
     void solid(Region region, format::Role role) {
-        append(region, role, kernel_pattern(profile_.skin.pattern),
-               radians(profile_.skin.angle_deg));
+        const InfillPattern pattern = kernel_pattern(profile_.skin.pattern);
+        const double angle_rad = radians(profile_.skin.angle_deg);
+        if (pattern == InfillPattern::concentric) {
+            append_rings(region, role);
+        } else if (is_solid(profile_) && profile_.perimeters.gap_fill) {
+            append(without_narrow(region, role), role, pattern, angle_rad);
+        } else {
+            append(region, role, pattern, angle_rad);
+        }
     }
 
     void bridges(Region region, Region below) {
@@ -169,9 +179,6 @@ public:
 
 private:
     void append(Region region, format::Role role, InfillPattern pattern, double angle_rad) {
-        if (pattern == InfillPattern::concentric) return append_rings(region, role);
-        const auto wide = without_narrow(region);
-        if (wide) region = *wide;
         const std::size_t first = fill.pieces.size();
         append(lines(region, {.pattern = pattern,
                               .density = 1,
@@ -197,17 +204,30 @@ private:
     }
 
     // Where no wall as wide as a line would fit into the region, neither do parallel lines: that is filled along its middle.
-    // Gives the rest, if there is anything of the kind.
-    std::optional<std::vector<Contour>> without_narrow(Region region) {
-        if (!is_solid(profile_) || region.empty()) return std::nullopt;
+    // Beside the ends of lines notches stay open, in a strip that is hardly longer across than these as much as a few per
+    // cent: such parts are filled with rings. Gives the rest.
+    std::vector<Contour> without_narrow(Region region, format::Role role) {
         const Walls lines = rings(region, 1);
-        if (lines.thin.empty()) return std::nullopt;
-        narrow(lines.thin, lines.thin_joints, format::Role::gap_fill,
-               profile_.perimeters.min_gap_mm, flank_mm());
-        std::vector<Contour> middles;
-        for (const Strand& strand : lines.strands) middles.push_back(strand.path);
-        return offset(middles, {.distance_mm = spacing_mm() / 2, .allowed_mm = allowed_mm_})
-            .contours;
+        std::vector<Contour> wide;
+        if (!lines.thin.empty()) {
+            narrow(lines.thin, lines.thin_joints, format::Role::gap_fill,
+                   profile_.perimeters.min_gap_mm, flank_mm());
+            std::vector<Contour> middles;
+            for (const Strand& strand : lines.strands) middles.push_back(strand.path);
+            OffsetResult made =
+                offset(middles, {.distance_mm = spacing_mm() / 2, .allowed_mm = allowed_mm_});
+            fill.unresolved += made.unresolved.has_value();
+            wide = std::move(made.contours);
+            region = wide;
+        }
+        std::vector<Contour> rest;
+        for (const std::vector<Contour>& part : parts_of(region)) {
+            if (2 * area_mm2(part) <= widest_strip_lines * spacing_mm() * lyr::length_mm(part))
+                append_rings(part, role);
+            else
+                rest.insert(rest.end(), part.begin(), part.end());
+        }
+        return rest;
     }
 
     void append_rings(Region region, format::Role role) {
