@@ -27,10 +27,10 @@ constexpr double least_space_share = 0.75;
 // Area that is filled twice or not at all and not looked into, of a wall of a layer: a square of this edge.
 constexpr double unseen_mm = 0.25;
 
-// In half widths of a line, how far a corner's tip may be from the middle of the line around it, which reaches but one:
-// corners of less than 39 degrees are narrow at their tips. Between walls of a part that is sparse inside anyway, of less
-// than 23 degrees.
-constexpr double mitre_limit = 3, sparse_mitre_limit = 5;
+// In half widths of a line, how far a corner's tip may be from the middle of the line around it, which reaches but one. Corners
+// of less than 44 degrees are narrow at their tips: of 45, a line 0.45 mm wide leaves what is `unseen_mm`. Between walls of a
+// part that is sparse inside anyway, and where walls themselves are mitred, it is 23 degrees.
+constexpr double mitre_limit = 5, tip_limit = 2.65;
 
 // By how much parts that are wide enough are cut wider than they are, so that their own boundary is left as it is; a
 // share of the width.
@@ -80,7 +80,7 @@ private:
     }
 
     double limit(std::uint32_t depth) const {
-        return depth == 0 || request_.solid ? mitre_limit : sparse_mitre_limit;
+        return depth == 0 || request_.solid ? tip_limit : mitre_limit;
     }
 
     // What lies that deep, made when it is asked for. Stays where it is.

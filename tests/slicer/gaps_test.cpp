@@ -152,8 +152,8 @@ TEST_CASE("gaps: at 100 % fill, necks between the walls that no line fits into w
 }
 
 TEST_CASE(
-    "gaps: tips of corners of 20 to 38 degrees were left out, at the outline and between walls") {
-    for (const double tip_rad : {0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65}) {
+    "gaps: tips of corners of 20 to 40 degrees were left out, at the outline and between walls") {
+    for (const double tip_rad : {0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.65, 0.7}) {
         CAPTURE(tip_rad);
         const auto wedge = [&](double length_mm) {
             const double half_mm = length_mm * std::tan(tip_rad / 2);
