@@ -5,8 +5,8 @@
 //  1. Where two walls run side by side, opposite ways, and their middles are between `least_mm` and `greatest_mm` apart,
 //     both are made wider or narrower by half of what these are farther than `spacing_mm` apart, and their middles moved by
 //     a quarter of it: the outer flank stays where it is, and there is neither gap nor overlap between them.
-//  2. Lines stay lines, arcs are about the same centres; where the width changes there is a step, as wide as what is
-//     narrower beside it.
+//  2. Lines stay lines, arcs are about the same centres; where the width changes there is a step, which goes slanting, as
+//     wide as what is narrower beside it.
 //  3. What is farther from the other wall, or nearer, stays as it is; walls of which that is all are the same bit for bit.
 //
 // Cost: a look across every half a width of the walls.
@@ -21,6 +21,7 @@ namespace lyr {
 
 struct FitRequest {
     double spacing_mm, least_mm, greatest_mm;
+    bool cuts_arcs = true;  // else those stay as they are along which the width would change
 };
 
 // Closed strands of one width, with the material on the left.

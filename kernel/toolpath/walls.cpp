@@ -64,7 +64,9 @@ public:
             // Further in there is nothing either.
             if (inner(depth).empty()) return std::move(walls_);
             add(inner(depth), depth);
-            if (request_.gap_fill && is_beside_itself_) fit(depth);
+            const bool is_lost = loses_strip(depth);
+            if (is_lost || (request_.gap_fill && is_beside_itself_))
+                fit(depth, is_lost || request_.solid);
         }
         walls_.inside = inner(request_.count);
         if (request_.gap_fill && request_.count > 0) fill_strips();
@@ -306,6 +308,12 @@ private:
                            [&](const auto& part) { return is_strip(part, width_mm); });
     }
 
+    // Whether a part of the wall is but two walls side by side, and nothing is further in.
+    bool loses_strip(std::uint32_t depth) {
+        return request_.gap_fill && inner(depth + 1).size() < inner(depth).size() &&
+               has_strip(inner(depth), most_apart_mm());
+    }
+
     // What the innermost walls leave and is no wider than a line: these are made wider, or it is a gap.
     void fill_strips() {
         if (!has_strip(walls_.inside, spacing_mm_)) return;
@@ -319,7 +327,8 @@ private:
         walls_.inside = std::move(rest);
     }
 
-    void fit(std::uint32_t depth) {
+    // In parts that are sparse inside, arcs beside others than concentric ones are better left whole.
+    void fit(std::uint32_t depth, bool cuts_arcs = true) {
         if (fitted_ > depth) return;
         fitted_ = depth + 1;
         const auto first = std::lower_bound(walls_.depths.begin(), walls_.depths.end(), depth);
@@ -330,7 +339,8 @@ private:
                          {.spacing_mm = spacing_mm_,
                           // Nearer than what is cut are walls in short necks only.
                           .least_mm = spacing_mm_ - 2 * (request_.width_mm - request_.min_width_mm),
-                          .greatest_mm = most_apart_mm()});
+                          .greatest_mm = most_apart_mm(),
+                          .cuts_arcs = cuts_arcs});
     }
 
     // Takes off a wall where its opposite sides are too near each other, and lists what it does not cover. Whether something
