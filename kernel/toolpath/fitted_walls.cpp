@@ -121,9 +121,6 @@ private:
                 runs.push_back({&piece, k / steps, (k + 1) / steps, slack});
             }
         }
-        if (request_.cuts_arcs || piece.curvature_per_mm == 0 || runs.size() == first + 1) return;
-        runs.resize(first);
-        runs.push_back({&piece, 0, 1, 0});
     }
 
     // Whether surely nothing that runs the opposite way is near.

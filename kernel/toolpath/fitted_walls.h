@@ -21,7 +21,6 @@ namespace lyr {
 
 struct FitRequest {
     double spacing_mm, least_mm, greatest_mm;
-    bool cuts_arcs = true;  // else those stay as they are along which the width would change
 };
 
 // Closed strands of one width, with the material on the left.

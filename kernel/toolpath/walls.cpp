@@ -64,9 +64,8 @@ public:
             // Further in there is nothing either.
             if (inner(depth).empty()) return std::move(walls_);
             add(inner(depth), depth);
-            const bool is_lost = loses_strip(depth);
-            if (is_lost || (request_.gap_fill && is_beside_itself_))
-                fit(depth, is_lost || request_.solid);
+            const bool is_near = request_.solid && request_.gap_fill && is_beside_itself_;
+            if (is_near || loses_strip(depth)) fit(depth);
         }
         walls_.inside = inner(request_.count);
         if (request_.gap_fill && request_.count > 0) fill_strips();
@@ -274,6 +273,12 @@ private:
         }
     }
 
+    // Nearer than what is cut are walls in short necks only. In sparse parts these overlap.
+    double least_apart_mm() const {
+        return request_.solid ? spacing_mm_ - 2 * (request_.width_mm - request_.min_width_mm)
+                              : least_space_share * spacing_mm_;
+    }
+
     // How far apart opposite walls may be that have no line between them.
     double most_apart_mm() const { return spacing_mm_ + request_.min_gap_mm; }
 
@@ -327,8 +332,7 @@ private:
         walls_.inside = std::move(rest);
     }
 
-    // In parts that are sparse inside, arcs beside others than concentric ones are better left whole.
-    void fit(std::uint32_t depth, bool cuts_arcs = true) {
+    void fit(std::uint32_t depth) {
         if (fitted_ > depth) return;
         fitted_ = depth + 1;
         const auto first = std::lower_bound(walls_.depths.begin(), walls_.depths.end(), depth);
@@ -337,10 +341,8 @@ private:
                              .subspan(static_cast<std::size_t>(first - walls_.depths.begin()),
                                       static_cast<std::size_t>(last - first)),
                          {.spacing_mm = spacing_mm_,
-                          // Nearer than what is cut are walls in short necks only.
-                          .least_mm = spacing_mm_ - 2 * (request_.width_mm - request_.min_width_mm),
-                          .greatest_mm = most_apart_mm(),
-                          .cuts_arcs = cuts_arcs});
+                          .least_mm = least_apart_mm(),
+                          .greatest_mm = most_apart_mm()});
     }
 
     // Takes off a wall where its opposite sides are too near each other, and lists what it does not cover. Whether something
