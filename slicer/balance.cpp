@@ -12,13 +12,15 @@ namespace {
 
 using Kind = Imbalance::Kind;
 
-// In squares as wide as a line. Of good prints no layer is off by as much (docs/algorithms/balance.md): where edges vanish and
-// walls meet, sums of lengths and widths are not quite areas, the more the longer these are.
-constexpr double least_missing_squares = 5, missing_share = 0.005, missing_along_outline_mm = 0.006;
+// Of good prints no layer is off by as much as five squares as wide as a line (docs/algorithms/balance.md): where edges vanish
+// and walls meet, sums of lengths and widths are not quite areas, the more the longer these are. Of small parts it is less,
+// but a square at least.
+constexpr double least_squares = 1, most_squares = 5, least_missing_share = 0.1;
+constexpr double missing_share = 0.005, missing_along_outline_mm = 0.006;
 
 // Walls that meet lie over each other by up to a quarter of their spacing, and fill that fits nowhere else does: more is
 // laid down on purpose than less.
-constexpr double least_surplus_squares = 5, surplus_share = 0.1;
+constexpr double surplus_share = 0.1;
 
 // So many runs of layers are told one by one.
 constexpr std::size_t most_told = 5;
@@ -94,10 +96,11 @@ std::optional<Imbalance> imbalance_of(const OutlinedLayer& layer, const LayerFil
     const double solid_mm2 = layer.printed.area_mm2 - area_mm2(fill.sparse) - told_mm2;
     const double missing_mm2 = solid_mm2 - laid_mm2(layer, fill, span, profile);
     const auto map = [&] { return map_of(layer, fill, span, profile); };
-    if (-missing_mm2 > std::max(least_surplus_squares * square_mm2, surplus_share * solid_mm2))
+    if (-missing_mm2 > std::max(least_squares * square_mm2, surplus_share * solid_mm2))
         return Imbalance{Kind::too_much, -missing_mm2, solid_mm2, map().most_surplus()};
     const double most_mm2 =
-        least_missing_squares * square_mm2 +
+        std::clamp(least_missing_share * solid_mm2, least_squares * square_mm2,
+                   most_squares * square_mm2) +
         std::min(missing_share * solid_mm2, missing_along_outline_mm * layer.printed.length_mm);
     if (!profile.perimeters.gap_fill || !(missing_mm2 > most_mm2)) return std::nullopt;
     return Imbalance{Kind::too_little, missing_mm2, solid_mm2, map().most_missing()};

@@ -4,8 +4,9 @@
 //  1. What is to be solid is the section without sparse fill and without what is told as too thin (left_out.h). Against it
 //     stand the strands of walls and solid fill: their lengths, times their widths without what flanks of neighbours share,
 //     times the flow that their fill gave them. Support, and the flow of the filament and of bridges, are no part of it.
-//  2. A square is as wide as a wall's line. Too little is what lacks more than 5 squares and 0.5 % of what is to be solid,
-//     or 6 um along the outline if that is less; too much is more than 5 squares and a tenth of what is to be solid.
+//  2. A square is as wide as a wall's line. Too little is what lacks more than 5 squares, or a tenth of what is to be solid if
+//     that is less, and 0.5 % of it, or 6 um along the outline if that is less; too much is more than a tenth. Less than a
+//     square is neither.
 //  3. Without gap fill nothing is too little: so it is wished.
 //  4. Each run of layers that lack something, or have too much, is one warning, with the layer and the place where it is
 //     worst; after a few runs the others are counted.

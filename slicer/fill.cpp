@@ -49,6 +49,9 @@ InfillPattern kernel_pattern(profile::SkinPattern pattern) {
 // How far the flow of solid fill may be off one.
 constexpr double least_flow = 0.8, most_flow = 1.1;
 
+// Of parts that are filled with rings in place of parallel lines.
+constexpr double widest_strip_lines = 3;
+
 double radians(double degrees) {
     return degrees * std::numbers::pi / 180;
 }
@@ -94,8 +97,15 @@ public:
           allowed_mm_(options.tolerance().unite_mm()) {}
 
     void solid(Region region, format::Role role) {
-        append(region, role, kernel_pattern(profile_.skin.pattern),
-               radians(profile_.skin.angle_deg));
+        const InfillPattern pattern = kernel_pattern(profile_.skin.pattern);
+        const double angle_rad = radians(profile_.skin.angle_deg);
+        if (pattern == InfillPattern::concentric) {
+            append_rings(region, role);
+        } else if (is_solid(profile_) && profile_.perimeters.gap_fill) {
+            append(without_narrow(region, role), role, pattern, angle_rad);
+        } else {
+            append(region, role, pattern, angle_rad);
+        }
     }
 
     void bridges(Region region, Region below) {
@@ -176,6 +186,66 @@ private:
                               .angle_rad = angle_rad}),
                role);
         balance(first, region, profile_.skin.width_mm);
+    }
+
+    double spacing_mm() const { return line_spacing_mm(profile_.skin.width_mm, span_.height_mm()); }
+
+    // Walls that fill the region as lines do, the outermost with its flank on the boundary.
+    Walls rings(Region region, std::uint32_t count) const {
+        const bool fills = profile_.perimeters.gap_fill;
+        return walls(region, {.count = count,
+                              .width_mm = spacing_mm(),
+                              .overlap = 0,
+                              .min_width_mm = profile_.perimeters.min_gap_mm,
+                              .min_gap_mm = profile_.perimeters.min_gap_mm,
+                              .thin_walls = fills,
+                              .gap_fill = fills && count > 1,
+                              .allowed_mm = allowed_mm_});
+    }
+
+    // Where no wall as wide as a line would fit into the region, neither do parallel lines: that is filled along its middle.
+    // Beside the ends of lines notches stay open, in a strip that is hardly longer across than these as much as a few per
+    // cent: such parts are filled with rings. Gives the rest.
+    std::vector<Contour> without_narrow(Region region, format::Role role) {
+        const Walls lines = rings(region, 1);
+        std::vector<Contour> wide;
+        if (!lines.thin.empty()) {
+            narrow(lines.thin, lines.thin_joints, format::Role::gap_fill,
+                   profile_.perimeters.min_gap_mm, flank_mm());
+            std::vector<Contour> middles;
+            for (const Strand& strand : lines.strands) middles.push_back(strand.path);
+            OffsetResult made =
+                offset(middles, {.distance_mm = spacing_mm() / 2, .allowed_mm = allowed_mm_});
+            fill.unresolved += made.unresolved.has_value();
+            wide = std::move(made.contours);
+            region = wide;
+        }
+        std::vector<Contour> rest;
+        for (const std::vector<Contour>& part : parts_of(region)) {
+            if (2 * area_mm2(part) <= widest_strip_lines * spacing_mm() * lyr::length_mm(part))
+                append_rings(part, role);
+            else
+                rest.insert(rest.end(), part.begin(), part.end());
+        }
+        return rest;
+    }
+
+    void append_rings(Region region, format::Role role) {
+        region::Box2 box;
+        for (const Contour& contour : region) box.extend(region::box_of(contour));
+        if (box.isEmpty()) return;
+        const double most = box.sizes().minCoeff() / 2 / spacing_mm();
+        Walls made = rings(region, static_cast<std::uint32_t>(most) + 2);
+        fill.unresolved += made.unresolved;
+        const double lap_mm = profile_.skin.width_mm - spacing_mm();
+        for (Strand& strand : made.strands) {
+            strand.width_mm += lap_mm;
+            for (double& width : strand.widths_mm) width += lap_mm;
+            fill.pieces.push_back({role, std::move(strand)});
+        }
+        const double least_mm = profile_.perimeters.min_gap_mm;
+        narrow(made.thin, made.thin_joints, format::Role::gap_fill, least_mm, flank_mm());
+        narrow(made.gaps, made.gap_joints, format::Role::gap_fill, least_mm, flank_mm());
     }
 
     void append(Fill lines, format::Role role) {

@@ -53,6 +53,7 @@ Walls walls_of(Region outline, const LayerSpan& span, const Options& options) {
                            .min_gap_mm = perimeters.min_gap_mm,
                            .thin_walls = perimeters.thin_walls,
                            .gap_fill = perimeters.gap_fill,
+                           .solid = options.profile.infill.density == 1,
                            .corner = perimeters.corner == profile::Corner::mitre ? Corner::mitre
                                                                                  : Corner::round,
                            .allowed_mm = options.tolerance().unite_mm()});

@@ -23,6 +23,8 @@ constexpr double corner_sine = 0.1;
 constexpr double most_corner_shifts = 4;
 // Shifts that differ by less are one: a step in the wall would be smaller than what is printed.
 constexpr double least_step_mm = 0.002;
+// Steps go slanting, along so much of the runs beside them, of the width: sideways, each would make the wall longer by itself.
+constexpr double slant_share = 0.0625, most_slant_of_run = 0.25;
 
 Vector2 tangent_at(const BoundaryPiece& piece, const Point2& point) {
     if (piece.curvature_per_mm == 0) return piece.start_tangent;
@@ -38,7 +40,13 @@ struct Run {
     double slack_mm;
 
     double shift_mm() const { return slack_mm / 4; }
-    double sweep_rad() const { return piece->curvature_per_mm * piece->length_mm * (to - from); }
+    double slant(double width_mm) const {
+        return std::min(slant_share * width_mm / piece->length_mm, most_slant_of_run * (to - from));
+    }
+    double sweep_rad() const { return sweep_rad(to - from); }
+    double sweep_rad(double share) const {
+        return piece->curvature_per_mm * piece->length_mm * share;
+    }
     BoundaryPoint start() const {
         return from == 0 ? BoundaryPoint{piece->start, piece->start_tangent} : piece->at(from);
     }
@@ -65,7 +73,20 @@ Meeting meeting_of(const Run& before, const Run& after) {
         const Point2 both = a.point + (shift_a + shift_b) / 2 * left_a;
         return {both, both};
     }
-    return {a.point + shift_a * left_a, a.point + shift_b * left_b};
+    return {a.point + shift_a * left_a, b.point + shift_b * left_b};
+}
+
+bool is_step(const Run& before, const Run& after) {
+    const double sine = cross(before.end().tangent, after.start().tangent);
+    return std::abs(sine) <= corner_sine &&
+           std::abs(before.shift_mm() - after.shift_mm()) > least_step_mm;
+}
+
+// From the end of one run to the start of the next.
+double sweep_between_rad(const Run& before, const Run& after) {
+    if (before.piece == after.piece && before.to <= after.from)
+        return before.sweep_rad(after.from - before.to);
+    return before.sweep_rad(1 - before.to) + after.sweep_rad(after.from);
 }
 
 class Fitter {
@@ -86,6 +107,10 @@ public:
 
 private:
     void add_runs(const BoundaryPiece& piece, std::vector<Run>& runs) const {
+        if (is_alone(piece)) {
+            runs.push_back({&piece, 0, 1, 0});
+            return;
+        }
         const double steps = std::ceil(piece.length_mm / (look_share * width_mm_));
         const std::size_t first = runs.size();
         for (double k = 0; k < steps; ++k) {
@@ -98,8 +123,24 @@ private:
         }
     }
 
+    // Whether surely nothing that runs the opposite way is near.
+    bool is_alone(const BoundaryPiece& piece) const {
+        if (turns_far(piece)) return false;
+        const Vector2 margin(request_.greatest_mm, request_.greatest_mm);
+        const region::Box2 box = piece.box();
+        return !boundary_.any({box.min() - margin, box.max() + margin}, [&](std::uint32_t i) {
+            const BoundaryPiece& other = boundary_.pieces()[i];
+            return turns_far(other) || other.middle_tangent.dot(piece.middle_tangent) < 0;
+        });
+    }
+
+    // By so much that its middle says little of its ends.
+    static bool turns_far(const BoundaryPiece& piece) {
+        return std::abs(piece.curvature_per_mm) * piece.length_mm > 1;
+    }
+
     static bool is_one(double a_mm, double b_mm) {
-        return std::abs(a_mm - b_mm) <= width_step_mm && (a_mm == 0) == (b_mm == 0);
+        return std::abs(a_mm - b_mm) <= 2 * width_step_mm && (a_mm == 0) == (b_mm == 0);
     }
 
     double slack_mm(const BoundaryPoint& at) const {
@@ -123,7 +164,7 @@ private:
     FitRequest request_;
 };
 
-Strand strand_of(const std::vector<Run>& runs, double width_mm) {
+Strand strand_of(std::vector<Run> runs, double width_mm) {
     const Run& first = runs.front();
     if (runs.size() == 1 && first.piece->is_circle) {
         const double curvature = first.piece->curvature_per_mm;
@@ -131,23 +172,32 @@ Strand strand_of(const std::vector<Run>& runs, double width_mm) {
         const double radius_mm = std::abs(1 / curvature - first.shift_mm());
         return {FullCircle{centre, radius_mm, curvature > 0}, width_mm + first.slack_mm / 2};
     }
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+        Run &before = runs[i], &after = runs[(i + 1) % runs.size()];
+        if (!is_step(before, after)) continue;
+        before.to -= before.slant(width_mm);
+        after.from += after.slant(width_mm);
+    }
     std::vector<Meeting> meetings;
     for (std::size_t i = 0; i < runs.size(); ++i)
         meetings.push_back(meeting_of(runs[i], runs[(i + 1) % runs.size()]));
     Path path{meetings.back().start, {}};
     Strand strand{.path = {}, .width_mm = width_mm + first.slack_mm / 2};
     Point2 at = path.start;
-    const auto add = [&](const Segment& segment, const Run& run) {
+    const auto add = [&](const Segment& segment, double slack_mm) {
         if (segment.end == at) return;
         path.segments.push_back(segment);
-        strand.widths_mm.push_back(width_mm + run.slack_mm / 2);
+        strand.widths_mm.push_back(width_mm + slack_mm / 2);
         at = segment.end;
     };
+    const auto go = [&](const Point2& end, double sweep, double slack_mm) {
+        add(sweep == 0 || end == at ? Segment{end} : arc_with_sweep(at, end, sweep), slack_mm);
+    };
     for (std::size_t i = 0; i < runs.size(); ++i) {
-        const Point2& end = meetings[i].end;
-        const double sweep = runs[i].sweep_rad();
-        add(sweep == 0 ? Segment{end} : arc_with_sweep(at, end, sweep), runs[i]);
-        add({meetings[i].start}, runs[i]);
+        const Run &run = runs[i], &next = runs[(i + 1) % runs.size()];
+        go(meetings[i].end, run.sweep_rad(), run.slack_mm);
+        // A step is as narrow as what is narrower: there the outer flank is nearer.
+        go(meetings[i].start, sweep_between_rad(run, next), std::min(run.slack_mm, next.slack_mm));
     }
     strand.path = std::move(path);
     return strand;

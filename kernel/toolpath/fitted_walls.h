@@ -5,7 +5,8 @@
 //  1. Where two walls run side by side, opposite ways, and their middles are between `least_mm` and `greatest_mm` apart,
 //     both are made wider or narrower by half of what these are farther than `spacing_mm` apart, and their middles moved by
 //     a quarter of it: the outer flank stays where it is, and there is neither gap nor overlap between them.
-//  2. Lines stay lines, arcs are about the same centres; where the width changes there is a step.
+//  2. Lines stay lines, arcs are about the same centres; where the width changes there is a step, which goes slanting, as
+//     wide as what is narrower beside it.
 //  3. What is farther from the other wall, or nearer, stays as it is; walls of which that is all are the same bit for bit.
 //
 // Cost: a look across every half a width of the walls.

@@ -27,9 +27,10 @@ constexpr double least_space_share = 0.75;
 // Area that is filled twice or not at all and not looked into, of a wall of a layer: a square of this edge.
 constexpr double unseen_mm = 0.25;
 
-// Corners as sharp as two fifths of a radian are wide enough: beyond, a nozzle cannot tell the tip from a line.
-constexpr double mitre_limit = 5;
-const double bluntest_tip_cosine = -std::cos(2 * std::asin(1 / mitre_limit));
+// In half widths of a line, how far a corner's tip may be from the middle of the line around it, which reaches but one. Corners
+// of less than 44 degrees are narrow at their tips: of 45, a line 0.45 mm wide leaves what is `unseen_mm`. Between walls of a
+// part that is sparse inside anyway, and where walls themselves are mitred, it is 23 degrees.
+constexpr double mitre_limit = 5, tip_limit = 2.65;
 
 // By how much parts that are wide enough are cut wider than they are, so that their own boundary is left as it is; a
 // share of the width.
@@ -63,7 +64,8 @@ public:
             // Further in there is nothing either.
             if (inner(depth).empty()) return std::move(walls_);
             add(inner(depth), depth);
-            if (loses_strip(depth)) fit(depth);
+            const bool is_near = request_.solid && request_.gap_fill && is_beside_itself_;
+            if (is_near || loses_strip(depth)) fit(depth);
         }
         walls_.inside = inner(request_.count);
         if (request_.gap_fill && request_.count > 0) fill_strips();
@@ -78,6 +80,10 @@ private:
         return depth == 0 ? 0 : middle - spacing_mm_ / 2;
     }
 
+    double limit(std::uint32_t depth) const {
+        return depth == 0 || request_.solid ? tip_limit : mitre_limit;
+    }
+
     // What lies that deep, made when it is asked for. Stays where it is.
     const std::vector<Contour>& inner(std::uint32_t depth) {
         std::optional<std::vector<Contour>>& found = inner_[depth];
@@ -90,21 +96,28 @@ private:
         return depth == 0 ? request_.width_mm / 2 : spacing_mm_ / 2;
     }
 
-    // What the walls before leave.
-    std::vector<Contour> outer(std::uint32_t depth) {
-        return depth == 0 ? base_ : shrunk(middle_mm(depth) - outwards_mm(depth));
+    // What the walls before leave. Stays where it is until another depth's is asked for.
+    const std::vector<Contour>& outer(std::uint32_t depth) {
+        if (depth == 0) return base_;
+        if (!outer_ || outer_depth_ != depth)
+            outer_ = shrunk(middle_mm(depth) - outwards_mm(depth));
+        outer_depth_ = depth;
+        return *outer_;
     }
 
     // Whether the wall needs no narrow parts taken off it, or none are to be.
     bool is_whole(std::uint32_t depth) {
+        is_beside_itself_ = true;
         if (!(depth == 0 ? request_.thin_walls : request_.gap_fill)) return true;
         const std::vector<Contour>& before = depth == 0 ? base_ : inner(depth - 1);
         const double before_mm = depth == 0 ? 0 : middle_mm(depth - 1);
-        const bool reaches =
-            is_even(before, inner(depth), middle_mm(depth) - before_mm) && !has_sharp_tip(before);
+        const bool reaches = is_even(before, inner(depth), middle_mm(depth) - before_mm) &&
+                             !has_sharp_tip(before, limit(depth));
         if (reaches &&
-            is_even(inner(depth), inner(depth + 1), middle_mm(depth + 1) - middle_mm(depth)))
+            is_even(inner(depth), inner(depth + 1), middle_mm(depth + 1) - middle_mm(depth))) {
+            is_beside_itself_ = false;
             return true;
+        }
         return !is_small(inner(depth)) && !is_narrow(depth) &&
                (reaches || is_reached(outer(depth), depth));
     }
@@ -155,8 +168,9 @@ private:
     }
 
     // Of the direction before and behind the corners to the left. Smooth ones cost a comparison.
-    static bool has_sharp_tip(Region region) {
-        return std::any_of(region.begin(), region.end(), [](const Contour& contour) {
+    static bool has_sharp_tip(Region region, double limit) {
+        const double bluntest_cosine = -std::cos(2 * std::asin(1 / limit));
+        return std::any_of(region.begin(), region.end(), [&](const Contour& contour) {
             const auto* path = std::get_if<Path>(&contour);
             if (!path || path->segments.empty()) return false;
             const std::size_t count = path->segments.size();
@@ -165,8 +179,7 @@ private:
                                          path->segments.back());
             for (const Segment& segment : path->segments) {
                 const Vector2 after = start_tangent(from, segment);
-                if (before.dot(after) < bluntest_tip_cosine && cross(before, after) > 0)
-                    return true;
+                if (before.dot(after) < bluntest_cosine && cross(before, after) > 0) return true;
                 before = end_tangent(from, segment);
                 from = segment.end;
             }
@@ -176,17 +189,27 @@ private:
 
     // Whether the wall's sides are near each other along more than is left alone.
     bool is_narrow(std::uint32_t depth) {
-        return narrow_mm2(Boundary(inner(depth)), least_space_share * spacing_mm_, mitre_limit) >
-               unseen_mm * unseen_mm;
+        const Boundary boundary(inner(depth));
+        const auto between_mm2 = [&](double apart_mm) {
+            return narrow_mm2(boundary, apart_mm, limit(depth));
+        };
+        // Of what lies between them, a third is filled twice at most.
+        const double beside_mm2 = between_mm2(most_apart_mm());
+        is_beside_itself_ = beside_mm2 > 3 * unseen_mm * unseen_mm;
+        return beside_mm2 > unseen_mm * unseen_mm &&
+               between_mm2(least_space_share * spacing_mm_) > unseen_mm * unseen_mm;
     }
 
-    // How much of what the walls before leave is outside of the wall, as it is, and its flank.
+    // How much of a region is outside of what lies within it and a flank around that.
+    static double unreached_mm2(Region outside, Region within, double flank_mm, double mitred_mm) {
+        return area_mm2(outside) - area_mm2(within) -
+               strip_mm2(Boundary(within), flank_mm, mitred_mm);
+    }
+
+    // The same of what the walls before leave, and the wall as it is.
     double unreached_mm2(Region outside, std::uint32_t depth) {
         const double flank_mm = outwards_mm(depth);
-        const double reached_mm2 =
-            area_mm2(inner(depth)) +
-            strip_mm2(Boundary(inner(depth)), flank_mm, mitre_limit * flank_mm);
-        return area_mm2(outside) - reached_mm2;
+        return unreached_mm2(outside, inner(depth), flank_mm, limit(depth) * flank_mm);
     }
 
     // What has no wall at all may be small, and still is a part that would be missed.
@@ -196,12 +219,12 @@ private:
     }
 
     std::vector<Contour> offset_by(const BoundedRegion& region, double distance_mm, Corner corner,
-                                   const CornersOf* mitred = nullptr) {
+                                   double limit = mitre_limit, const CornersOf* mitred = nullptr) {
         if (region.contours.empty()) return {};
         OffsetResult result = offset(region, {.distance_mm = distance_mm,
                                               .allowed_mm = request_.allowed_mm,
                                               .corner = corner,
-                                              .mitre_limit = mitre_limit,
+                                              .mitre_limit = limit,
                                               .mitred = mitred});
         walls_.second_method += result.second_method;
         walls_.unresolved += result.unresolved.has_value();
@@ -224,7 +247,7 @@ private:
     std::vector<Contour> grown(Region inner, std::uint32_t depth, double inside_mm,
                                double distance_mm) {
         const CornersOf corners{bounded().boundary, inside_mm - base_mm_};
-        return offset_by(BoundedRegion(inner), distance_mm, Corner::mitre,
+        return offset_by(BoundedRegion(inner), distance_mm, Corner::mitre, limit(depth),
                          depth == 0 ? &corners : nullptr);
     }
 
@@ -233,6 +256,7 @@ private:
         base_ = std::move(wall);
         base_mm_ = middle_mm(depth);
         bounded_.reset();
+        outer_.reset();
         std::fill(inner_.begin() + depth, inner_.end(), std::nullopt);
     }
 
@@ -247,6 +271,12 @@ private:
             walls_.strands.push_back({contour, request_.width_mm});
             walls_.depths.push_back(depth);
         }
+    }
+
+    // Nearer than what is cut are walls in short necks only. In sparse parts these overlap.
+    double least_apart_mm() const {
+        return request_.solid ? spacing_mm_ - 2 * (request_.width_mm - request_.min_width_mm)
+                              : least_space_share * spacing_mm_;
     }
 
     // How far apart opposite walls may be that have no line between them.
@@ -311,17 +341,19 @@ private:
                              .subspan(static_cast<std::size_t>(first - walls_.depths.begin()),
                                       static_cast<std::size_t>(last - first)),
                          {.spacing_mm = spacing_mm_,
-                          .least_mm = least_space_share * spacing_mm_,
+                          .least_mm = least_apart_mm(),
                           .greatest_mm = most_apart_mm()});
     }
 
     // Takes off a wall where its opposite sides are too near each other, and lists what it does not cover. Whether something
     // is left out that is too narrow for a line.
     bool separate_narrow(std::uint32_t depth) {
-        const std::vector<Contour> outside = outer(depth);
+        const std::vector<Contour>& outside = outer(depth);
         std::vector<Contour> wall = inner(depth);
-        std::vector<Contour> wide = with_short_necks(wall, wide_parts(wall, depth));
-        const bool is_cut = wide.size() < wall.size() || !goes_around(outside, wall, depth) ||
+        const bool is_around = goes_around(outside, wall, depth);
+        std::vector<Contour> wide =
+            with_short_necks(wall, wide_parts(wall, depth, depth > 0 || is_around));
+        const bool is_cut = wide.size() < wall.size() || !is_around ||
                             area_mm2(wall) - area_mm2(wide) > unseen_mm * unseen_mm;
         if (!is_cut && is_reached(outside, depth)) return false;
         if (is_cut) wall = std::move(wide);
@@ -338,12 +370,17 @@ private:
     }
 
     // The parts of a wall whose opposite sides are far enough from each other.
-    std::vector<Contour> wide_parts(Region wall, std::uint32_t depth) {
+    std::vector<Contour> wide_parts(Region wall, std::uint32_t depth, bool may_be_all) {
         const double half_mm = least_space_share * spacing_mm_ / 2;
         const double margin_mm = cut_margin_share * request_.width_mm;
         const double inside_mm = middle_mm(depth) + half_mm;
-        const std::vector<Contour> wide =
-            grown(shrunk(inside_mm), depth, inside_mm, half_mm + margin_mm);
+        const std::vector<Contour> core = shrunk(inside_mm);
+        // Of outermost walls not all corners are mitred.
+        const double mitred_mm = depth == 0 ? 0 : limit(depth) * half_mm;
+        if (may_be_all && has_same_parts(wall, core) &&
+            unreached_mm2(wall, core, half_mm, mitred_mm) <= unseen_mm * unseen_mm)
+            return {wall.begin(), wall.end()};
+        const std::vector<Contour> wide = grown(core, depth, inside_mm, half_mm + margin_mm);
         if (wide.empty()) return {};
         return operated(wall, wide, Operation::intersect);
     }
@@ -377,7 +414,8 @@ private:
         const std::vector<Contour> fit = offset_by(bounded_rest, -half_mm, Corner::round);
         const CornersOf corners{bounded_rest.boundary, half_mm};
         const std::vector<Contour> opened =
-            offset_by(BoundedRegion(fit), half_mm, Corner::mitre, depth == 0 ? &corners : nullptr);
+            offset_by(BoundedRegion(fit), half_mm, Corner::mitre, limit(depth),
+                      depth == 0 ? &corners : nullptr);
         const std::vector<Contour> narrow =
             opened.empty() ? opened : operated(opened, rest, Operation::intersect);
         const double left_out_mm2 = area_mm2(rest) - area_mm2(narrow);
@@ -420,8 +458,11 @@ private:
     double base_mm_ = 0;
     std::optional<BoundedRegion> bounded_;
     double spacing_mm_;
-    std::uint32_t fitted_ = 0;  // the walls outside of this depth need not be fitted again
+    bool is_beside_itself_ = false;  // the wall that was looked at last has sides side by side
+    std::uint32_t fitted_ = 0;       // the walls outside of this depth need not be fitted again
     std::vector<std::optional<std::vector<Contour>>> inner_;  // by depth
+    std::optional<std::vector<Contour>> outer_;               // of that depth
+    std::uint32_t outer_depth_ = 0;
     Walls walls_;
 };
 

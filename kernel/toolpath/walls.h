@@ -8,7 +8,8 @@
 //     opposite sides would lie over each other by more than a quarter of their spacing, there is no wall; that part is in
 //     `thin` (no wall at all fits) or `gaps` (none beside the walls that do), as the region to be filled from flank to
 //     flank. Thin parts narrower than `min_width_mm` and gaps narrower than `min_gap_mm` are left out and their area
-//     counted; that of thin parts, where no wall is printed at all, once more by itself.
+//     counted; that of thin parts, where no wall is printed at all, once more by itself. So are the tips of corners of less
+//     than 44 degrees, which a round line around them does not reach; of inner walls around what is not `solid`, 23 degrees.
 //     Where they go over into walls there are joints, by which strands find the walls to end at. Where a web is too thin
 //     for that, so that it joins nothing, is `lost_web`, the first such place.
 //  3. `inside` is what the walls leave for fill: within the inner flanks of the innermost.
@@ -32,6 +33,7 @@ struct WallRequest {
     double overlap = 1;                           // see 1; in [0, 1]
     double min_width_mm = 0.2, min_gap_mm = 0.1;  // of thin parts and gaps that are filled
     bool thin_walls = true, gap_fill = true;
+    bool solid = true;  // what is inside will be filled; see 2
     Corner corner = Corner::round;
     double allowed_mm = 0;
 };

@@ -183,3 +183,23 @@ TEST_CASE("balance 4: one warning for a run of layers, where it is worst") {
     CHECK(first[5].message == "so it is in 4 other runs of layers");
     CHECK(first[5].where.layer == 11);
 }
+
+TEST_CASE(
+    "balance 2: of a part of a few square millimetres, a third could be missing or laid twice") {
+    for (const double turn : {0.0, 0.3, 1.7}) {
+        CAPTURE(turn);
+        // One wall around, one within it.
+        const OutlinedLayer good = walled({square(0.86, turn)});
+        REQUIRE(good.walls.strands.size() == 2);
+        CHECK(!found(good, {}));
+        const auto less = found(without_a_wall(good), {});
+        REQUIRE(less);
+        CHECK(less->kind == Kind::too_little);
+        OutlinedLayer bad = good;
+        bad.walls.strands.push_back(good.walls.strands.back());
+        bad.walls.depths.push_back(1);
+        const auto more = found(bad, {});
+        REQUIRE(more);
+        CHECK(more->kind == Kind::too_much);
+    }
+}
