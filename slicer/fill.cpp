@@ -262,7 +262,11 @@ private:
         request.z_mm = span_.middle_mm();
         request.layer = index_;
         request.allowed_mm = allowed_mm_;
-        const double inset_mm = flank_mm() + (0.5 - profile_.infill.overlap) * request.width_mm;
+        // Without walls it begins at the outline itself.
+        const bool is_bare = profile_.perimeters.count == 0;
+        const double inset_mm =
+            is_bare ? request.width_mm / 2
+                    : flank_mm() + (0.5 - profile_.infill.overlap) * request.width_mm;
         const OffsetResult middles =
             offset(region, {.distance_mm = -inset_mm, .allowed_mm = allowed_mm_});
         Fill lines = infill(middles.contours, request);

@@ -196,6 +196,28 @@ TEST_CASE(
     CHECK(print_it());
 }
 
+TEST_CASE("without walls, fill reached out of the part by its overlap with walls") {
+    for (const double overlap : {0.0, 0.25, 1.0}) {
+        CAPTURE(overlap);
+        Options options;
+        options.profile.perimeters.count = 0;
+        options.profile.infill.density = 1;
+        options.profile.infill.overlap = overlap;
+        const auto printed = print_part("cuboid.step", scratch("bare.lyr"), options);
+        REQUIRE(printed);
+        const auto reader = format::Reader::open(scratch("bare.lyr"));
+        REQUIRE(reader);
+        const format::Summary& summary = reader->header().summary;
+        const double inset_mm = options.profile.skin.width_mm / 2 - 0.002;
+        const Vector3 size = printed->box.sizes();
+        CHECK(summary.low_x_mm >= inset_mm);
+        CHECK(summary.low_y_mm >= inset_mm);
+        CHECK(summary.high_x_mm <= size.x() - inset_mm);
+        CHECK(summary.high_y_mm <= size.y() - inset_mm);
+        CHECK(summary.low_x_mm < inset_mm + 0.3);
+    }
+}
+
 TEST_CASE("slicer: skirt and brim go around the part on the first layer, and come first") {
     for (const auto& [kind, role, reach_mm] :
          {std::tuple(profile::AdhesionKind::skirt, format::Role::skirt, 6.225),
