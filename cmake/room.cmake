@@ -8,6 +8,8 @@ add_library(lyr_flags INTERFACE)
 target_compile_options(lyr_flags INTERFACE -Wall -Wextra -Wconversion -ffp-contract=off -fno-math-errno -fno-trapping-math
                        -ffunction-sections -fdata-sections)
 target_link_options(lyr_flags INTERFACE -Wl,--gc-sections)
+# Files of more than 2 GiB on 32-bit processors too.
+target_compile_definitions(lyr_flags INTERFACE _FILE_OFFSET_BITS=64)
 # A name of one source may be a constant of another that is compiled with it.
 target_compile_options(lyr_flags INTERFACE $<IF:$<BOOL:${LYR_UNITY}>,-Wshadow=local,-Wshadow>)
 if(LYR_SANITIZE STREQUAL thread)

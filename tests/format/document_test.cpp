@@ -72,8 +72,8 @@ TEST_CASE("the example of docs/c-reader.md is the program that the tests build, 
     REQUIRE(test::write_worked_example(path).ok());
     const auto run = [&] {
         const std::string out = path + ".txt";
-        const int status =
-            std::system((LYR_BUILD "/print_layers " + path + " >" + out + " 2>&1").c_str());
+        const int status = std::system(
+            (LYR_EMULATOR " " LYR_BUILD "/print_layers " + path + " >" + out + " 2>&1").c_str());
         std::stringstream printed;
         printed << std::ifstream(out).rdbuf();
         return std::pair(status, printed.str());

@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <numeric>
 
 using namespace lyr::gpio;
@@ -53,7 +54,8 @@ TEST_CASE("clock 5: the tracing clock counts every wait by how late it ended") {
     VirtualClock inner([&](std::int64_t) { return late_ns; });
     TracingClock clock(inner);
     std::int64_t time_ns = 0;
-    for (const std::int64_t late : {0L, 999L, 1'000L, 3'000L, 40'000'000'000'000L}) {
+    for (const std::int64_t late :
+         std::array<std::int64_t, 5>{0, 999, 1'000, 3'000, 40'000'000'000'000}) {
         late_ns = late;
         time_ns = clock.wait_until_ns(time_ns + 10);
     }
@@ -62,6 +64,6 @@ TEST_CASE("clock 5: the tracing clock counts every wait by how late it ended") {
     CHECK(clock.histogram()[2] == 1);
     CHECK(clock.histogram()[TracingClock::buckets - 1] == 1);
     CHECK(std::accumulate(clock.histogram().begin(), clock.histogram().end(), 0ULL) == 5);
-    CHECK(clock.worst_ns() == 40'000'000'000'000L);
+    CHECK(clock.worst_ns() == 40'000'000'000'000);
     CHECK(clock.now_ns() == inner.now_ns());
 }

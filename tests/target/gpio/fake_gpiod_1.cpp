@@ -148,7 +148,8 @@ int gpiod_line_event_read_multiple(gpiod_line* line, gpiod_line_event* events, u
     if (board().must_fail(Call::read)) return -1;
     unsigned count = 0;
     for (FakeEdge edge{}; count < room && FakeBoard::pop(line->fake(), edge); ++count) {
-        events[count].ts = {edge.time_ns / 1'000'000'000, edge.time_ns % 1'000'000'000};
+        events[count].ts = {static_cast<time_t>(edge.time_ns / 1'000'000'000),
+                            static_cast<long>(edge.time_ns % 1'000'000'000)};
         events[count].event_type =
             edge.rising ? GPIOD_LINE_EVENT_RISING_EDGE : GPIOD_LINE_EVENT_FALLING_EDGE;
     }
