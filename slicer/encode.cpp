@@ -145,7 +145,8 @@ private:
         };
         const Walls& walls = layer_.outlined.walls;
         for (std::size_t i = 0; i < walls.strands.size(); ++i)
-            add(wall_style(i), lyr::length_mm(walls.strands[i].path));
+            for (const WallStretch& stretch : stretches(walls.strands[i]))
+                add(style_of(stretch, i), lyr::length_mm(stretch.strand.path));
         for (const Piece& piece : layer_.fill.pieces) add(piece_style(piece), length_mm(piece));
         return pieces;
     }
@@ -250,22 +251,24 @@ private:
         const Strand wall = started_at(layer_.outlined.walls.strands[move.index], move.seam);
         travel(way_to(move), move.seam.point);
         if (wipes()) keep(wipe_along(wall, move.seam.point, profile_.travel.wipe_mm));
-        if (held_) {
-            for (const WallStretch& stretch : held_->stretches(wall, move.seam.point))
-                append_stretch(stretch, wall_style(move.index));
-        } else {
-            begin(wall_style(move.index));
-            draw(wall);
+        for (const WallStretch& stretch : stretches(wall, move.seam.point)) {
+            if (stretch.over_air) encoder_.fan(0, profile_.bridge.fan);
+            begin(style_of(stretch, move.index));
+            draw(stretch.strand);
+            if (stretch.over_air) encoder_.fan(0, fan_);
         }
         head_ = move.seam.point;
     }
 
-    void append_stretch(const WallStretch& stretch, const format::PathStyle& held) {
-        if (stretch.over_air) encoder_.fan(0, profile_.bridge.fan);
-        begin(stretch.over_air ? styles_.of(Role::overhang_wall, stretch.strand.width_mm, 0, 1)
-                               : held);
-        draw(stretch.strand);
-        if (stretch.over_air) encoder_.fan(0, fan_);
+    std::vector<WallStretch> stretches(const Strand& wall,
+                                       const std::optional<Point2>& start = {}) const {
+        if (!held_) return {{wall}};
+        return held_->stretches(wall, start.value_or(lyr::start_of(wall.path)));
+    }
+
+    format::PathStyle style_of(const WallStretch& stretch, std::size_t wall) const {
+        return stretch.over_air ? styles_.of(Role::overhang_wall, stretch.strand.width_mm, 0, 1)
+                                : wall_style(wall);
     }
 
     void append_piece(const PrintMove& move) {

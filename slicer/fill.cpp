@@ -52,6 +52,10 @@ constexpr double least_flow = 0.8, most_flow = 1.1;
 // Of parts that are filled with rings in place of parallel lines.
 constexpr double widest_strip_lines = 3;
 
+// Parts with more contours are filled with lines of their pattern alone: the middle of what is narrow in a net takes long to
+// find.
+constexpr std::size_t most_contours = 24;
+
 double radians(double degrees) {
     return degrees * std::numbers::pi / 180;
 }
@@ -100,9 +104,13 @@ public:
         const InfillPattern pattern = kernel_pattern(profile_.skin.pattern);
         const double angle_rad = radians(profile_.skin.angle_deg);
         if (pattern == InfillPattern::concentric) {
-            append_rings(region, role);
+            const Parts parts = parts_by_contours(region);
+            append_rings(parts.few, role);
+            append(parts.many, role, pattern, angle_rad);
         } else if (is_solid(profile_) && profile_.perimeters.gap_fill) {
-            append(without_narrow(region, role), role, pattern, angle_rad);
+            const Parts parts = parts_by_contours(region);
+            append(without_narrow(parts.few, role), role, pattern, angle_rad);
+            append(parts.many, role, pattern, angle_rad);
         } else {
             append(region, role, pattern, angle_rad);
         }
@@ -186,6 +194,19 @@ private:
                               .angle_rad = angle_rad}),
                role);
         balance(first, region, profile_.skin.width_mm);
+    }
+
+    struct Parts {
+        std::vector<Contour> few, many;  // contours
+    };
+    static Parts parts_by_contours(Region region) {
+        if (region.size() <= most_contours) return {{region.begin(), region.end()}, {}};
+        Parts result;
+        for (const std::vector<Contour>& part : parts_of(region)) {
+            auto& list = part.size() > most_contours ? result.many : result.few;
+            list.insert(list.end(), part.begin(), part.end());
+        }
+        return result;
     }
 
     double spacing_mm() const { return line_spacing_mm(profile_.skin.width_mm, span_.height_mm()); }

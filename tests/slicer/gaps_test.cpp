@@ -227,3 +227,22 @@ TEST_CASE("gaps: rings of solid fill left their middle open") {
             CHECK(!imbalance_of(print.layer, print.fill, span, options.profile));
         }
 }
+
+TEST_CASE("a perforated plate took a minute for the middles of the net between its holes") {
+    Contours plate{rectangle(0, 0, 120, 120)};
+    for (int i = 0; i < 13; ++i)
+        for (int k = 0; k < 13; ++k)
+            plate.push_back(FullCircle{{9.2 * i + 4.8, 9.2 * k + 4.8}, 3.2, false});
+    for (const auto pattern :
+         {profile::SkinPattern::rectilinear, profile::SkinPattern::concentric}) {
+        Options options;
+        options.profile.infill.density = 1;
+        options.profile.skin.pattern = pattern;
+        const PrintedLayer print = printed(plate, options);
+        std::size_t lines = 0;
+        for (const Piece& piece : print.fill.pieces)
+            lines += piece.role != format::Role::gap_fill && piece.role != format::Role::thin_wall;
+        CHECK(lines > 0);
+        CHECK(laid_share_of(print) > 0.9);
+    }
+}
