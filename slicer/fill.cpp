@@ -103,17 +103,15 @@ public:
     void solid(Region region, format::Role role) {
         const InfillPattern pattern = kernel_pattern(profile_.skin.pattern);
         const double angle_rad = radians(profile_.skin.angle_deg);
-        if (pattern == InfillPattern::concentric) {
-            const Parts parts = parts_by_contours(region);
+        const bool is_concentric = pattern == InfillPattern::concentric;
+        if (!is_concentric && !(is_solid(profile_) && profile_.perimeters.gap_fill))
+            return append(region, role, pattern, angle_rad);
+        const Parts parts = parts_by_contours(region);
+        if (is_concentric)
             append_rings(parts.few, role);
-            append(parts.many, role, pattern, angle_rad);
-        } else if (is_solid(profile_) && profile_.perimeters.gap_fill) {
-            const Parts parts = parts_by_contours(region);
+        else
             append(without_narrow(parts.few, role), role, pattern, angle_rad);
-            append(parts.many, role, pattern, angle_rad);
-        } else {
-            append(region, role, pattern, angle_rad);
-        }
+        append(parts.many, role, pattern, angle_rad);
     }
 
     void bridges(Region region, Region below) {

@@ -57,17 +57,22 @@ void for_strands(const PrintedLayer& print, Take take) {
     }
 }
 
+// Calls take(line, width) for all that a strand consists of.
+template <class Take>
+void for_lines(const Strand& strand, Take take) {
+    Fill one;
+    one.strands = {strand};
+    std::size_t segment = 0;
+    for (const PrintedLine& line : lines_of(one))
+        take(line, strand.widths_mm.empty() ? strand.width_mm : strand.widths_mm[segment++]);
+}
+
 // Of a region's area, in lines 20 um apart.
 double covered_share_of(const PrintedLayer& print, const Contours& region) {
     constexpr double line_mm = 0.02, chord_mm = 0.1;
     std::map<long, Intervals> rows;
     for_strands(print, [&](const Strand& strand, double) {
-        Fill one;
-        one.strands = {strand};
-        std::size_t segment = 0;
-        for (const PrintedLine& line : lines_of(one)) {
-            const double width_mm =
-                strand.widths_mm.empty() ? strand.width_mm : strand.widths_mm[segment++];
+        for_lines(strand, [&](const PrintedLine& line, double width_mm) {
             const int chords =
                 1 + static_cast<int>(lyr::length_mm(line.start, line.segment) / chord_mm);
             for (int i = 0; i < chords; ++i) {
@@ -82,7 +87,7 @@ double covered_share_of(const PrintedLayer& print, const Contours& region) {
                     add_covered(a, b, width_mm / 2, (static_cast<double>(row) + 0.5) * line_mm,
                                 rows[row]);
             }
-        }
+        });
     });
     const Hatch scan = hatch(region, 0, line_mm);
     const long first = std::lround(scan.first_offset_mm / line_mm - 0.5);
@@ -119,17 +124,12 @@ double outside_mm(const PrintedLayer& print) {
     const Boundary outline(print.layer.outline);
     double most = 0;
     for (const Strand& wall : print.layer.walls.strands) {
-        Fill one;
-        one.strands = {wall};
-        std::size_t segment = 0;
-        for (const PrintedLine& line : lines_of(one)) {
-            const double width_mm =
-                wall.widths_mm.empty() ? wall.width_mm : wall.widths_mm[segment++];
+        for_lines(wall, [&](const PrintedLine& line, double width_mm) {
             for (int k = 0; k <= 4; ++k) {
                 const Point2 point = point_at(line.start, line.segment, k / 4.0);
                 most = std::max(most, width_mm / 2 - outline.distance_mm(point, 1));
             }
-        }
+        });
     }
     return most;
 }
