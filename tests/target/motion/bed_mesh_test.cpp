@@ -19,7 +19,7 @@ using test::Real;
 using test::timed_run;
 using test::TimedRun;
 
-constexpr Real moved_steps = 5e-4L;
+constexpr Real moved_steps = 5e-4;
 
 std::shared_ptr<const BedMesh> wavy(double pitch_mm, double height_mm, double fade_mm) {
     std::vector<double> heights_mm;
@@ -42,7 +42,7 @@ Job over_bed(unsigned seed, std::size_t count, double size_mm) {
 void check_steps(const TimedRun& timed) {
     for (std::size_t motor = 0; motor < motor_count; ++motor) {
         const Errors errors = errors_of(timed, motor);
-        CHECK(errors.steps <= 0.5L + moved_steps);
+        CHECK(errors.steps <= 0.5 + moved_steps);
         CHECK(errors.time_ns < 1000);
     }
 }

@@ -1,6 +1,6 @@
 // For the tests of motion: plans a list of moves, takes all steps, and knows where the axes ideally
-// are at any time. The ideal is computed in long double straight from the plan's paths and phases,
-// apart from the code that finds the steps.
+// are at any time. The ideal is computed straight from the plan's paths and phases, apart from the
+// code that finds the steps.
 
 #pragma once
 
@@ -9,14 +9,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <random>
+#include <type_traits>
 #include <vector>
 
 #include "target/motion/step_generator.h"
 
 namespace lyr::motion::test {
 
-using Real = long double;
+// The widest that the processor computes with itself. Wider ones (128 bits on arm64) are computed by
+// a library, a hundred times slower.
+using Real =
+    std::conditional_t<std::numeric_limits<long double>::digits <= 64, long double, double>;
 using AxisReals = std::array<Real, axis_count>;
 
 inline Limits even_limits(double speed_mm_s, double acceleration_mm_s2) {
@@ -83,7 +88,7 @@ inline Run run(const Job& job) {
     return result;
 }
 
-// Where the plan wants the axes to be, in long double.
+// Where the plan wants the axes to be.
 class Ideal {
 public:
     explicit Ideal(const Run& run) : run_(run) {
@@ -99,7 +104,7 @@ public:
     AxisReals at_ns(Real time_ns) {
         while (index_ + 1 < starts_ns_.size() && starts_ns_[index_ + 1] <= time_ns) ++index_;
         while (index_ > 0 && starts_ns_[index_] > time_ns) --index_;
-        return in_move(index_, (time_ns - starts_ns_[index_]) / 1e9L);
+        return in_move(index_, (time_ns - starts_ns_[index_]) / Real{1e9});
     }
 
     AxisReals in_move(std::size_t index, Real time_s) const {
@@ -192,21 +197,33 @@ inline Real largest_deviation(const Run& run, std::size_t motor) {
 
 // Half a step, and what the motor may move in the nanosecond to which times are rounded.
 inline Real allowed_deviation(const Run& run, std::size_t motor) {
-    return 0.5L +
+    return Real{0.5} +
            run.job.limits.axes[motor].speed_mm_s * std::abs(run.job.cartesian.steps_per_mm[motor]) *
-               1e-9L +
-           1e-6L;
+               Real{1e-9} +
+           Real{1e-6};
+}
+
+// Where `passed` becomes true between `low` and `high`, to `fine_ns` or between two numbers next to
+// each other.
+template <class Passed>
+Real first_passed(Real low, Real high, Real fine_ns, const Passed& passed) {
+    while (high - low > fine_ns) {
+        const Real middle = (low + high) / 2;
+        if (!(low < middle && middle < high)) break;
+        (passed(middle) ? high : low) = middle;
+    }
+    return high;
 }
 
 // The largest error of any step's time against a bisection of the ideal, in ns.
 inline Real largest_time_error_ns(const Run& run, std::size_t motor) {
-    constexpr Real close_ns = 2, fine_ns = 1e-4L;
+    constexpr Real close_ns = 2, fine_ns = 1e-4;
     Ideal ideal(run);
     const std::vector<MotorStep> steps = steps_of(run, motor);
     Real worst = 0;
     std::int64_t count = 0;
     for (std::size_t i = 0; i < steps.size(); ++i) {
-        const Real middle = static_cast<Real>(count) + steps[i].direction / 2.0L;
+        const Real middle = static_cast<Real>(count) + steps[i].direction / Real{2};
         const Real now = static_cast<Real>(steps[i].time_ns);
         const Real before = i > 0 ? static_cast<Real>(steps[i - 1].time_ns) : 0;
         const Real after = i + 1 < steps.size() ? static_cast<Real>(steps[i + 1].time_ns)
@@ -222,8 +239,7 @@ inline Real largest_time_error_ns(const Run& run, std::size_t motor) {
             // Steps closer together than times are rounded to.
             worst = std::max(worst, after - before);
         } else {
-            while (high - low > fine_ns) (passed((low + high) / 2) ? high : low) = (low + high) / 2;
-            worst = std::max(worst, std::abs(high - now));
+            worst = std::max(worst, std::abs(first_passed(low, high, fine_ns, passed) - now));
         }
         count += steps[i].direction;
     }

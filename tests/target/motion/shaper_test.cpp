@@ -184,7 +184,7 @@ TEST_CASE("shaper 3: the extruder's speed does not jump over junctions") {
     double largest_jump = 0, last = 0;
     for (double ns = -2e7; ns < timed.run.end_ns + 2e7; ns += 1e5) {
         const double speed = static_cast<double>(
-            (ideal.steps_at_ns(3, ns + 1e5) - ideal.steps_at_ns(3, ns)) / 4000 / 1e-4L);
+            (ideal.steps_at_ns(3, ns + 1e5) - ideal.steps_at_ns(3, ns)) / 4000 / Real{1e-4});
         largest_jump = std::max(largest_jump, std::abs(speed - last));
         last = speed;
     }

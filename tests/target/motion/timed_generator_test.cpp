@@ -25,7 +25,7 @@ using std::numbers::pi;
 constexpr Real exact_ns = 1000;
 // In the nanosecond that times are rounded to a motor at 300 mm/s and 800 steps/mm, twice as fast on
 // crossed belts, moves so much.
-constexpr Real moved_steps = 5e-4L;
+constexpr Real moved_steps = 5e-4;
 
 Delta delta_of(double steps_per_mm) {
     Delta delta{{steps_per_mm, steps_per_mm, steps_per_mm, 415.3}, {}};
@@ -52,7 +52,7 @@ Real check_steps(const TimedRun& timed) {
     Real worst_ns = 0;
     for (std::size_t motor = 0; motor < motor_count; ++motor) {
         const Errors errors = errors_of(timed, motor);
-        CHECK(errors.steps <= 0.5L + moved_steps);
+        CHECK(errors.steps <= 0.5 + moved_steps);
         CHECK(errors.time_ns < exact_ns);
         worst_ns = std::max(worst_ns, errors.time_ns);
     }

@@ -1,4 +1,4 @@
-// As machine.h, for motors whose steps come from the timed generator: the ideal is the plan in long double,
+// As machine.h, for motors whose steps come from the timed generator: the ideal is the plan itself,
 // summed over the taps and taken through the kinematics of the machine.
 
 #pragma once
@@ -97,7 +97,7 @@ private:
         const auto index =
             static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, after - starts_ns_.begin() - 1));
         const PlannedMove& move = timed_.run.plan[index];
-        const Real time_s = (time_ns - starts_ns_[index]) / 1e9L;
+        const Real time_s = (time_ns - starts_ns_[index]) / Real{1e9};
         if (channel < axis_e) return ideal_.in_move(index, time_s)[channel];
         const Real share = ideal_.share(index, time_s);
         if (channel == axis_e) return fed_[index] + share * advance_of(move.path);
@@ -131,7 +131,7 @@ struct Errors {
 // In one pass over the steps of a motor.
 inline Errors errors_of(const TimedRun& timed, std::size_t motor) {
     constexpr int looks = 4;
-    constexpr Real close_ns = 3, fine_ns = 1e-3L;
+    constexpr Real close_ns = 3, fine_ns = 1e-3;
     const TimedIdeal ideal(timed);
     const std::vector<MotorStep> steps = steps_of(timed.run, motor);
     Errors worst;
@@ -148,16 +148,16 @@ inline Errors errors_of(const TimedRun& timed, std::size_t motor) {
     for (std::size_t i = 0; i < steps.size(); ++i) {
         const Real now = static_cast<Real>(steps[i].time_ns), before = last_ns;
         look_until(now);
-        const Real middle = static_cast<Real>(count) + steps[i].direction / 2.0L;
+        const Real middle = static_cast<Real>(count) + steps[i].direction / Real{2};
         const auto passed = [&](Real time_ns) {
             return (ideal.steps_at_ns(motor, time_ns) - middle) * steps[i].direction >= 0;
         };
         const Real after =
-            i + 1 < steps.size() ? static_cast<Real>(steps[i + 1].time_ns) : now + 1e6L;
+            i + 1 < steps.size() ? static_cast<Real>(steps[i + 1].time_ns) : now + Real{1e6};
         // As far out as it takes to find it on both sides, but not to the neighbours.
         Real reach = close_ns;
         Real low = now, high = now;
-        while (reach < 1e6L && !(!passed(low) && passed(high))) {
+        while (reach < Real{1e6} && !(!passed(low) && passed(high))) {
             low = std::max((before + now) / 2, now - reach);
             high = std::min((after + now) / 2, now + reach);
             if (low <= (before + now) / 2 && high >= (after + now) / 2) break;
@@ -166,8 +166,8 @@ inline Errors errors_of(const TimedRun& timed, std::size_t motor) {
         if (passed(low) || !passed(high)) {
             worst.time_ns = std::max(worst.time_ns, after - before);
         } else {
-            while (high - low > fine_ns) (passed((low + high) / 2) ? high : low) = (low + high) / 2;
-            worst.time_ns = std::max(worst.time_ns, std::abs(high - now));
+            worst.time_ns =
+                std::max(worst.time_ns, std::abs(first_passed(low, high, fine_ns, passed) - now));
         }
         count += steps[i].direction;
     }
