@@ -71,9 +71,6 @@ void append_shaper_problems(const Printer& printer, const Given& given, Problems
         const std::string path = "shaper." + std::string(axis_names[axis]);
         if (printer.shapers[axis].kind != ShaperKind::none && !given(path + ".frequency_hz"))
             problems.emplace_back(path + ".kind", ": needs " + path + ".frequency_hz beside it");
-        if (given(path) && !given(path + ".kind"))
-            problems.emplace_back(path, ": does nothing without " + path +
-                                            ".kind; `kind = \"none\"` switches it off");
     }
 }
 
@@ -143,6 +140,16 @@ Problems machine_problems(const Printer& printer, const Given& given) {
     }
     if (printer.max_jerk_mm_s3 > 0 && printer.max_jerk_mm_s3 < 1)
         problems.emplace_back("max_jerk_mm_s3", ": expected 0 for no limit, or a number from 1 on");
+    const double slowest_mm_s2 = std::min(printer.axes[axis_x].max_acceleration_mm_s2,
+                                          printer.axes[axis_y].max_acceleration_mm_s2);
+    // Where firmwares speak of jerk they mean a jump in speed, some 10 mm/s.
+    if (printer.max_jerk_mm_s3 >= 1 && printer.max_jerk_mm_s3 < slowest_mm_s2)
+        problems.emplace_back(
+            "max_jerk_mm_s3",
+            formatted(": with %g no axis gets to its max_acceleration_mm_s2 within a second, and "
+                      "every move would crawl; it is a change of acceleration, not the jump in "
+                      "speed that some firmwares call jerk: 100000 is a start, 0 no limit",
+                      printer.max_jerk_mm_s3));
     append_start_problems(printer, given, problems);
     append_shaper_problems(printer, given, problems);
     const auto& late_ns = printer.timing.late_ns;

@@ -17,6 +17,7 @@
 //  8. A delta's arms reach the whole of its reach_mm, at flattest_arm_share of their length at the most, and
 //     its start lies within.
 //  9. held_speed_mm_s() of all axes together asks no motor for more than held_steps_per_s().
+// 10. No key of a file is one that nothing looks at, and none contradicts another as docs/configuration.md says.
 
 #pragma once
 
