@@ -115,6 +115,9 @@ void append_machine_keys(std::vector<Key>& keys) {
     }));
     keys.push_back(number("max_jerk_mm_s3", {0, 1e9},
                           [](Draft& d, double v) { d.printer.max_jerk_mm_s3 = v; }));
+    // Beyond, a short line is hardly begun before it ends.
+    keys.push_back(number("minimum_cruise_ratio", {0, 0.95},
+                          [](Draft& d, double v) { d.printer.minimum_cruise_ratio = v; }));
     keys.push_back(towers_key("delta.arm_mm", {1, 10'000}, &DeltaFrame::arm_mm));
     keys.push_back(towers_key("delta.radius_mm", {1, 10'000}, &DeltaFrame::radius_mm));
     keys.push_back(towers_key("delta.tower_angle_deg", {-360, 360}, &DeltaFrame::tower_angle_deg));

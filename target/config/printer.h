@@ -92,7 +92,8 @@ struct Printer {
     DeltaFrame delta;
     std::array<InputShaper, 3> shapers;  // of x, y and z
     double pressure_advance_s = 0, pressure_smooth_s = 0.04;
-    double max_jerk_mm_s3 = 0;            // 0: no limit
+    double max_jerk_mm_s3 = 0;  // 0: no limit
+    double minimum_cruise_ratio = 0;
     std::array<double, 3> backlash_mm{};  // of the motors of x, y and z
     double junction_deviation_mm = 0.02;
     std::array<double, 3> start_mm{};            // where the head stands when a print begins
