@@ -191,6 +191,9 @@ void append_range_problems(const std::string& section, const Heater& heater, boo
 void append_guard_problems(const std::string& section, const Heater& heater, const Given& given,
                            Problems& problems) {
     const GuardLimits& guard = heater.guard;
+    if (heater.pid.kp == 0 && heater.pid.ki == 0)
+        problems.emplace_back(section + ".kp",
+                              ": with kp = 0 and ki = 0 the heater would never be switched on");
     const auto key = [&](const char* name, const char* other) {
         return section + (given(section + name) ? name : other);
     };

@@ -107,6 +107,23 @@ void append_delta_problems(const Printer& printer, const Given& given, Problems&
         problems.emplace_back("start_mm", ": farther from the middle than delta.reach_mm");
 }
 
+// Whoever calibrates x and y one by one, as on other machines, bends the corner between them.
+void append_belt_problems(const Printer& printer, Problems& problems) {
+    if (printer.kinematics != Kinematics::corexy) return;
+    const double x = printer.axes[axis_x].steps_per_mm, y = printer.axes[axis_y].steps_per_mm;
+    // Drivers may be set to different microsteps, which are powers of two.
+    const double doublings = std::log2(y / x);
+    constexpr double rounding = 1e-9;
+    if (std::abs(doublings - std::round(doublings)) < rounding) return;
+    problems.emplace_back(
+        "axis.y.steps_per_mm",
+        formatted(
+            ": %g is not axis.x.steps_per_mm = %g, nor that doubled or halved for other "
+            "microsteps: both belts of a CoreXY move x as well as y, so that neither axis has "
+            "steps of its own",
+            y, x));
+}
+
 }  // namespace
 
 void append_machine_keys(std::vector<Key>& keys) {
@@ -153,6 +170,7 @@ Problems machine_problems(const Printer& printer, const Given& given) {
                       "every move would crawl; it is a change of acceleration, not the jump in "
                       "speed that some firmwares call jerk: 100000 is a start, 0 no limit",
                       printer.max_jerk_mm_s3));
+    append_belt_problems(printer, problems);
     append_start_problems(printer, given, problems);
     append_shaper_problems(printer, given, problems);
     const auto& late_ns = printer.timing.late_ns;

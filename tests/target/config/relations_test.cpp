@@ -160,6 +160,21 @@ TEST_CASE("printer 10: a jump in speed was taken for a limit of jerk") {
     check_taken("max_jerk_mm_s3 = 0\n" + cartesian);
 }
 
+TEST_CASE("printer 10: the belts of a CoreXY were calibrated as if they were axes") {
+    const auto steps_of_y = [](const std::string& steps) {
+        std::string text = with("axis.y", "#");
+        return text.replace(text.find("#steps_per_mm = 80"), 18, "steps_per_mm = " + steps);
+    };
+    check_taken(steps_of_y("80.4"));
+    check_refused(
+        "kinematics = \"corexy\"\n" + steps_of_y("80.4"), "steps_per_mm = 80.4",
+        "axis.y.steps_per_mm: 80.4 is not axis.x.steps_per_mm = 80, nor that doubled or "
+        "halved for other microsteps: both belts of a CoreXY move x as well as y, so that "
+        "neither axis has steps of its own");
+    for (const char* steps : {"80", "160", "20"})
+        check_taken("kinematics = \"corexy\"\n" + steps_of_y(steps));
+}
+
 TEST_CASE("printer 10: a simulated head that endstops never find, or that no arms hold") {
     const std::string homed = with("axis.x", "endstop = 5\n");
     check_taken("simulate.head_mm = [209, 500, 500]\n" + homed);
@@ -275,6 +290,9 @@ TEST_CASE("printer 10: guards and models that would end every print") {
                   "heater.bed.guard.frozen_time_s: guard.frozen_time_s = 59 must be at least two "
                   "cycles of cycle_s = 30, or a sound sensor could be taken for dead");
     check_taken(bed("cycle_s = 30\n"));
+    check_refused(bed("kp = 0\nki = 0\n"), "kp = 0",
+                  "heater.bed.kp: with kp = 0 and ki = 0 the heater would never be switched on");
+    check_taken(bed("ki = 0\n"));
     check_taken(bed("pwm = \"/sys/p\"\nguard.frozen_time_s = 1\n"));
     check_refused(
         bed("model.power_w = 10\nmodel.loss_w_k = 0.05\n"), "model.power_w = 10",
