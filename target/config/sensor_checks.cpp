@@ -62,19 +62,17 @@ bool check_points(const std::string& section, const Sensor& sensor, Problems& pr
 // What the kernel's drivers call their files.
 struct SensorFile {
     bool is_one_wire = false;
-    bool is_celsius = false;  // thousandths of a degree
+    bool is_temperature = false;
     bool is_counts = false;
 };
 
 SensorFile file_of(const std::string& path) {
+    const auto has = [&](const char* part) { return path.find(part) != std::string::npos; };
     const std::string name = path.substr(path.rfind('/') + 1);
     SensorFile file;
     // The families of the digital thermometers; others behind the same bus end elsewhere.
-    for (const char* family : {"/10-", "/22-", "/28-", "/42-"})
-        file.is_one_wire = file.is_one_wire || (path.find("/w1/") != std::string::npos &&
-                                                path.find(family) != std::string::npos);
-    file.is_celsius = path.find("/w1/") != std::string::npos ||
-                      (name.starts_with("temp") && name.ends_with("_input"));
+    file.is_one_wire = has("/w1/") && (has("/10-") || has("/22-") || has("/28-") || has("/42-"));
+    file.is_temperature = path.starts_with("/sys/") && name.find("temp") != std::string::npos;
     file.is_counts = name.ends_with("_raw");
     return file;
 }
@@ -82,7 +80,7 @@ SensorFile file_of(const std::string& path) {
 void append_file_problems(const std::string& section, const Sensor& sensor, const Given& given,
                           Problems& problems) {
     const SensorFile file = file_of(sensor.file);
-    if (sensor.kind != celsius && file.is_celsius)
+    if (sensor.kind != celsius && file.is_temperature)
         problems.emplace_back(
             section + ".sensor.file",
             ": this file holds a temperature: it needs " + section + ".sensor.kind = \"celsius\"");

@@ -38,7 +38,7 @@ struct Limits {
     double junction_deviation_mm = 0.02;
     double extruder_jump_mm_s = 1;
     double jerk_mm_s3 = 0;  // along the path; 0: no limit
-    // Of every way from one slow place to the next, at least this share is gone at an even speed. Below 1.
+    // Of every way from one slow place to the next this share is gone at an even speed; below 1.
     double minimum_cruise_ratio = 0;
     BedShape bed{};
     double bed_jump_mm_s = 1;

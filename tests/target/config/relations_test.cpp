@@ -238,6 +238,10 @@ TEST_CASE("printer 10: a sensor's file and its kind go together") {
                   "heater.tool.sensor.file: this file holds counts: it needs "
                   "heater.tool.sensor.celsius_per_unit, which is 0.25 for a MAX31855 or MAX6675");
     check_taken(tool("sensor.kind = \"celsius\"\nsensor.celsius_per_unit = 0.25\n" + raw));
+    check_refused(tool(raw), raw.substr(0, raw.size() - 1),
+                  "heater.tool.sensor.file: this file holds a temperature: it needs "
+                  "heater.tool.sensor.kind = \"celsius\"");
+    check_taken(tool("sensor.file = \"/sys/bus/iio/devices/iio:device1/in_voltage0_raw\"\n"));
     const std::string hwmon = "sensor.file = \"/sys/class/hwmon/hwmon2/temp1_input\"\n";
     check_refused(tool(hwmon), hwmon.substr(0, hwmon.size() - 1),
                   "heater.tool.sensor.file: this file holds a temperature: it needs "
