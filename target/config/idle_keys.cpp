@@ -11,7 +11,7 @@ struct Idle {
     std::string why;
 };
 
-void append_shaper_keys(const Given& given, std::vector<Idle>& keys) {
+void append_shapers(const Given& given, std::vector<Idle>& keys) {
     for (std::size_t i = axis_x; i <= axis_z; ++i) {
         const std::string path = "shaper." + std::string(axis_names[i]);
         keys.push_back({path, !given(path + ".kind"),
@@ -19,7 +19,7 @@ void append_shaper_keys(const Given& given, std::vector<Idle>& keys) {
     }
 }
 
-void append_endstop_keys(const Printer& printer, bool has_probe, std::vector<Idle>& keys) {
+void append_endstops(const Printer& printer, bool has_probe, std::vector<Idle>& keys) {
     for (std::size_t i = 0; i < printer.endstops.size(); ++i) {
         const std::string axis = "axis." + std::string(axis_names[i]) + '.';
         const bool by_probe = i == axis_z && has_probe && printer.kinematics != Kinematics::delta;
@@ -31,7 +31,7 @@ void append_endstop_keys(const Printer& printer, bool has_probe, std::vector<Idl
     }
 }
 
-void append_homing_keys(const Printer& printer, bool has_probe, std::vector<Idle>& keys) {
+void append_homing(const Printer& printer, bool has_probe, std::vector<Idle>& keys) {
     bool has_contact = has_probe;
     for (const Endstop& endstop : printer.endstops) has_contact = has_contact || endstop.input;
     const auto append = [&](const char* key) {
@@ -46,7 +46,7 @@ void append_homing_keys(const Printer& printer, bool has_probe, std::vector<Idle
                         "on a delta, which homes all towers at once and upwards"});
 }
 
-void append_probe_keys(const Printer& printer, bool has_probe, std::vector<Idle>& keys) {
+void append_probe_and_bed(const Printer& printer, bool has_probe, std::vector<Idle>& keys) {
     keys.push_back({"probe", !has_probe, "without probe.input"});
     for (const char* key : {"simulate.probe_noise_mm", "simulate.probe_offset_mm"})
         keys.push_back({key, !has_probe, "without probe.input"});
@@ -58,7 +58,7 @@ void append_probe_keys(const Printer& printer, bool has_probe, std::vector<Idle>
         keys.push_back({key, printer.kinematics != Kinematics::delta, "but on a delta"});
 }
 
-void append_pwm_keys(const Printer& printer, std::vector<Idle>& keys) {
+void append_channels(const Printer& printer, std::vector<Idle>& keys) {
     const auto append = [&](const std::string& section, const std::string& pwm) {
         keys.push_back({section + ".cycle_s", !pwm.empty(),
                         "beside " + section + ".pwm, whose folder has a period of its own"});
@@ -78,11 +78,11 @@ Problems idle_problems(const Printer& printer, const Given& given) {
          "without pressure_advance.advance_s"},
         {"timing.write_us", !printer.timing.late_ns, "without timing.late_us"},
         {"watchdog.timeout_s", printer.watchdog.device.empty(), "without watchdog.device"}};
-    append_shaper_keys(given, keys);
-    append_endstop_keys(printer, has_probe, keys);
-    append_homing_keys(printer, has_probe, keys);
-    append_probe_keys(printer, has_probe, keys);
-    append_pwm_keys(printer, keys);
+    append_shapers(given, keys);
+    append_endstops(printer, has_probe, keys);
+    append_homing(printer, has_probe, keys);
+    append_probe_and_bed(printer, has_probe, keys);
+    append_channels(printer, keys);
     Problems problems;
     for (const Idle& key : keys)
         if (key.idle && given(key.key)) problems.emplace_back(key.key, ": does nothing " + key.why);

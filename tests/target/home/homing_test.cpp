@@ -258,3 +258,16 @@ TEST_CASE("homing: an endstop farther beyond its axis than the margin was taken 
         CHECK(scene.off_steps(homed->head) < 1);
     }
 }
+
+TEST_CASE("homing: a simulated machine of 25 mm began beyond its own axes") {
+    config::Printer printer = machine_of(config::Kinematics::cartesian);
+    for (const std::size_t axis : {config::axis_x, config::axis_y, config::axis_z}) {
+        printer.axes[axis].min_mm = 0;
+        printer.axes[axis].max_mm = 25;
+        printer.homing.margin_mm = 1;
+    }
+    Scene scene(printer);
+    const Result<home::Homed> homed = scene.home();
+    REQUIRE_MESSAGE(homed.ok(), (homed.ok() ? "" : to_string(homed.error())));
+    CHECK(scene.off_steps(homed->head) < 1);
+}
