@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "target/config/key_rules.h"
+#include "target/config/sensor_checks.h"
 
 namespace lyr::config {
 namespace {
@@ -165,32 +166,6 @@ void append_two_ways(const std::string& section, const std::optional<Pin>& outpu
                                   ".output is given too");
 }
 
-// Keys that only some kinds of sensor look at, and that a kind needs.
-void append_sensor_problems(const std::string& section, const Sensor& sensor, const Given& given,
-                            Problems& problems) {
-    struct Owner {
-        const char* key;
-        SensorKind kind, or_kind;
-        const char* names;
-    };
-    using enum SensorKind;
-    constexpr std::array<Owner, 4> owners{
-        {{".sensor.r25_ohm", beta, beta, "\"beta\""},
-         {".sensor.beta_k", beta, beta, "\"beta\""},
-         {".sensor.points", steinhart_hart, table, "\"steinhart_hart\" or \"table\""},
-         {".sensor.celsius_per_unit", celsius, celsius, "\"celsius\""}}};
-    for (const Owner& owner : owners)
-        if (given(section + owner.key) && sensor.kind != owner.kind && sensor.kind != owner.or_kind)
-            problems.emplace_back(section + owner.key,
-                                  ": only for " + section + ".sensor.kind = " + owner.names);
-    if (sensor.kind == steinhart_hart && sensor.points.size() != 3)
-        problems.emplace_back(
-            section + ".sensor.points",
-            formatted(": a steinhart_hart sensor needs 3 points, found %zu", sensor.points.size()));
-    if (sensor.kind == table && sensor.points.size() < 2)
-        problems.emplace_back(section + ".sensor.points", ": a table needs at least 2 points");
-}
-
 void append_range_problems(const std::string& section, const Heater& heater, bool is_tool,
                            const Given& given, Problems& problems) {
     const auto& [low_c, high_c] = std::pair(heater.guard.low_c, heater.guard.high_c);
@@ -212,6 +187,53 @@ void append_range_problems(const std::string& section, const Heater& heater, boo
                                                    push.c_str(), heater.min_extrude_c));
 }
 
+// A guard that would strike whatever the heater does.
+void append_guard_problems(const std::string& section, const Heater& heater, const Given& given,
+                           Problems& problems) {
+    const GuardLimits& guard = heater.guard;
+    if (heater.pid.kp == 0 && heater.pid.ki == 0)
+        problems.emplace_back(section + ".kp",
+                              ": with kp = 0 and ki = 0 the heater would never be switched on");
+    const auto key = [&](const char* name, const char* other) {
+        return section + (given(section + name) ? name : other);
+    };
+    if (guard.gain_c > guard.rate_c_s * guard.gain_time_s)
+        problems.emplace_back(
+            key(".guard.rate_c_s", ".guard.gain_c"),
+            formatted(": guard.gain_c = %g in guard.gain_time_s = %g is faster than "
+                      "guard.rate_c_s = %g, which no heater may be",
+                      guard.gain_c, guard.gain_time_s, guard.rate_c_s));
+    // Its power is moved in the second half of that time, and a whole cycle of pulses must show it.
+    if (heater.pwm.empty() && guard.frozen_time_s / 2 < heater.cycle_s)
+        problems.emplace_back(
+            key(".guard.frozen_time_s", ".cycle_s"),
+            formatted(": guard.frozen_time_s = %g must be at least two cycles of cycle_s = %g, or "
+                      "a sound sensor could be taken for dead",
+                      guard.frozen_time_s, heater.cycle_s));
+}
+
+// A simulated heater that is too weak ends every print that is simulated.
+void append_model_problems(const std::string& section, const Heater& heater, bool is_tool,
+                           const Given& given, Problems& problems) {
+    const std::string key = section + ".model";
+    if (!given(key)) return;
+    const HeatModel& model = heater.model;
+    const GuardLimits& guard = heater.guard;
+    const double power_w = model.power_w * heater.max_power;
+    const double gained_c = power_w / model.capacity_j_k * guard.gain_time_s;
+    const double reached_c = usual_room_c + power_w / model.loss_w_k;
+    if (gained_c < guard.gain_c)
+        problems.emplace_back(
+            key, formatted(": %g W warm capacity_j_k = %g by %.2g °C in guard.gain_time_s = %g at "
+                           "the most, and guard.gain_c is %g",
+                           power_w, model.capacity_j_k, gained_c, guard.gain_time_s, guard.gain_c));
+    else if (is_tool && reached_c < heater.min_extrude_c)
+        problems.emplace_back(
+            key, formatted(": %g W against loss_w_k = %g get to %.0f °C at the most, and "
+                           "heater.tool.min_extrude_c is %g",
+                           power_w, model.loss_w_k, reached_c, heater.min_extrude_c));
+}
+
 }  // namespace
 
 Problems heat_problems(const Printer& printer, const Given& given) {
@@ -221,8 +243,10 @@ Problems heat_problems(const Printer& printer, const Given& given) {
         if (!heater) continue;
         const std::string section = "heater." + std::string(heater_names[i]);
         append_two_ways(section, heater->output, heater->pwm, problems);
-        append_sensor_problems(section, heater->sensor, given, problems);
+        append_sensor_problems(section, *heater, given, problems);
         append_range_problems(section, *heater, i == heater_tool, given, problems);
+        append_guard_problems(section, *heater, given, problems);
+        append_model_problems(section, *heater, i == heater_tool, given, problems);
     }
     if (const auto& fan = printer.part_fan)
         append_two_ways("fan.part", fan->output, fan->pwm, problems);

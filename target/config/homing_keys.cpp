@@ -189,8 +189,7 @@ void append_simulated(std::vector<Key>& keys) {
     towers("simulate.endstop_error_mm", &SimulatedMachine::endstop_error_mm);
 }
 
-void append_endstop_problems(const Printer& printer, std::size_t number, const Given& given,
-                             Problems& problems) {
+void append_endstop_problems(const Printer& printer, std::size_t number, Problems& problems) {
     const Endstop& endstop = printer.endstops[number];
     if (!endstop.input) return;
     const bool is_delta = printer.kinematics == Kinematics::delta;
@@ -211,10 +210,31 @@ void append_endstop_problems(const Printer& printer, std::size_t number, const G
                                 : "; endstop_end = \"high\" would have it there"));
     if (endstop.back_off_mm >= axis.max_mm - axis.min_mm)
         problems.emplace_back(path + "home_back_off_mm", ": longer than all of " + range);
-    if (number == axis_z && printer.homing.lift_mm >= axis.max_mm - axis.min_mm)
+}
+
+// How high the head goes before anything is homed, and before the bed is probed.
+void append_height_problems(const Printer& printer, const Given& given, Problems& problems) {
+    const Axis& z = printer.axes[axis_z];
+    const double room_mm = z.max_mm - z.min_mm;
+    const std::string range = formatted("axis.z.range_mm = [%g, %g]", z.min_mm, z.max_mm);
+    const auto key = [&](const char* name) { return given(name) ? name : "axis.z.range_mm"; };
+    const bool has_probe = printer.probe && printer.probe->input;
+    const bool lifts =
+        printer.kinematics != Kinematics::delta && (printer.endstops[axis_z].input || has_probe);
+    if (lifts && printer.homing.lift_mm >= room_mm)
         problems.emplace_back(
-            given("homing.lift_mm") ? "homing.lift_mm" : path + "range_mm",
+            key("homing.lift_mm"),
             formatted(": homing.lift_mm = %g is more than all of ", printer.homing.lift_mm) +
+                range);
+    if (!has_probe) return;
+    const Probe& probe = *printer.probe;
+    const double offset_mm = std::max(0.0, probe.offset_mm[2]);
+    if (offset_mm + probe.lift_mm + probe.reach_mm > room_mm)
+        problems.emplace_back(
+            key(given("probe.reach_mm") ? "probe.reach_mm" : "probe.lift_mm"),
+            formatted(": probing begins at probe.lift_mm = %g and probe.reach_mm = %g over where "
+                      "the probe triggers, which is more than all of ",
+                      probe.lift_mm, probe.reach_mm) +
                 range);
 }
 
@@ -230,8 +250,21 @@ void append_probe_problems(const Printer& printer, const Given& given, Problems&
                            y_mm - printer.probe->offset_mm[1]));
         return false;
     };
-    if (given("probe.home_mm"))
+    const bool is_delta = printer.kinematics == Kinematics::delta;
+    const Axis &x = printer.axes[axis_x], &y = printer.axes[axis_y];
+    const auto& offset_mm = printer.probe->offset_mm;
+    if (is_delta ? std::hypot(offset_mm[0], offset_mm[1]) >= printer.delta.reach_mm
+                 : std::abs(offset_mm[0]) >= x.max_mm - x.min_mm ||
+                       std::abs(offset_mm[1]) >= y.max_mm - y.min_mm)
+        problems.emplace_back("probe.offset_mm",
+                              ": so far from the nozzle the probe is never over the bed");
+    else if (given("probe.home_mm"))
         need("probe.home_mm", (*printer.probe->home_mm)[0], (*printer.probe->home_mm)[1]);
+    else if (!is_delta && !printer.endstops[axis_z].input &&
+             !probe_reaches(printer, (x.min_mm + x.max_mm) / 2, (y.min_mm + y.max_mm) / 2))
+        problems.emplace_back("probe.offset_mm",
+                              ": with it the probe, which homes z, cannot get to the middle of the "
+                              "bed; say in probe.home_mm where it can");
     // What has been measured already was within reach.
     if (!printer.mesh.has_area || !printer.mesh.heights_mm.empty()) return;
     const auto& [x0, y0, x1, y1] = printer.mesh.area_mm;
@@ -263,6 +296,33 @@ void append_mesh_problems(const BedMesh& mesh, Problems& problems) {
             "mesh.heights_mm",
             formatted(": %zu rows of %zu heights are not the mesh.points = [%d, %d]", rows, columns,
                       mesh.points[0], mesh.points[1]));
+}
+
+// A simulated head that its endstops would never find, or that its arms do not hold.
+void append_simulated_problems(const Printer& printer, Problems& problems) {
+    const SimulatedMachine& truth = printer.simulated;
+    const bool is_delta = printer.kinematics == Kinematics::delta;
+    if (is_delta)
+        for (std::size_t i = 0; i < truth.arm_error_mm.size(); ++i)
+            if (printer.delta.radius_mm[i] + truth.radius_error_mm[i] + printer.delta.reach_mm >=
+                printer.delta.arm_mm[i] + truth.arm_error_mm[i]) {
+                problems.emplace_back("simulate",
+                                      ": with these errors an arm does not reach delta.reach_mm");
+                break;
+            }
+    if (!truth.head_mm) return;
+    const auto& head_mm = *truth.head_mm;
+    if (is_delta && std::hypot(head_mm[0], head_mm[1]) > printer.delta.reach_mm)
+        problems.emplace_back("simulate.head_mm", ": farther from the middle than delta.reach_mm");
+    for (std::size_t i = axis_x; i <= axis_z && !is_delta; ++i) {
+        const double margin_mm = printer.homing.margin_mm;
+        const double nearest_mm = std::clamp(head_mm[i], printer.axes[i].min_mm - margin_mm,
+                                             printer.axes[i].max_mm + margin_mm);
+        if (printer.endstops[i].input && nearest_mm != head_mm[i])
+            problems.emplace_back("simulate.head_mm",
+                                  formatted(": %s, by more than homing.margin_mm = %g",
+                                            outside(printer, i, head_mm[i])->c_str(), margin_mm));
+    }
 }
 
 }  // namespace
@@ -304,7 +364,7 @@ Problems homing_problems(const Printer& printer, const Given& given) {
         const Endstop& endstop = printer.endstops[axis];
         const std::string path = "axis." + std::string(axis_names[axis]) + '.';
         inputs += endstop.input ? 1 : 0;
-        append_endstop_problems(printer, axis, given, problems);
+        append_endstop_problems(printer, axis, problems);
         if (endstop.slow_mm_s > endstop.fast_mm_s)
             problems.emplace_back(
                 path + "home_slow_mm_s",
@@ -318,8 +378,14 @@ Problems homing_problems(const Printer& printer, const Given& given) {
     if (printer.probe && printer.probe->slow_mm_s > printer.probe->fast_mm_s)
         problems.emplace_back("probe.slow_mm_s", formatted(": faster than probe.speed_mm_s = %g",
                                                            printer.probe->fast_mm_s));
+    if (is_delta && inputs == 0 && printer.probe && printer.probe->input)
+        problems.emplace_back("probe.input",
+                              ": a delta is probed only after it has been homed by its endstops, "
+                              "axis.x.endstop and so on, which it has none of");
+    append_height_problems(printer, given, problems);
     append_probe_problems(printer, given, problems);
     append_mesh_problems(printer.mesh, problems);
+    append_simulated_problems(printer, problems);
     return problems;
 }
 

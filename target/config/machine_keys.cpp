@@ -71,9 +71,6 @@ void append_shaper_problems(const Printer& printer, const Given& given, Problems
         const std::string path = "shaper." + std::string(axis_names[axis]);
         if (printer.shapers[axis].kind != ShaperKind::none && !given(path + ".frequency_hz"))
             problems.emplace_back(path + ".kind", ": needs " + path + ".frequency_hz beside it");
-        if (given(path) && !given(path + ".kind"))
-            problems.emplace_back(path, ": does nothing without " + path +
-                                            ".kind; `kind = \"none\"` switches it off");
     }
 }
 
@@ -110,6 +107,23 @@ void append_delta_problems(const Printer& printer, const Given& given, Problems&
         problems.emplace_back("start_mm", ": farther from the middle than delta.reach_mm");
 }
 
+// Whoever calibrates x and y one by one, as on other machines, bends the corner between them.
+void append_belt_problems(const Printer& printer, Problems& problems) {
+    if (printer.kinematics != Kinematics::corexy) return;
+    const double x = printer.axes[axis_x].steps_per_mm, y = printer.axes[axis_y].steps_per_mm;
+    // Drivers may be set to different microsteps, which are powers of two.
+    const double doublings = std::log2(y / x);
+    constexpr double rounding = 1e-9;
+    if (std::abs(doublings - std::round(doublings)) < rounding) return;
+    problems.emplace_back(
+        "axis.y.steps_per_mm",
+        formatted(
+            ": %g is not axis.x.steps_per_mm = %g, nor that doubled or halved for other "
+            "microsteps: both belts of a CoreXY move x as well as y, so that neither axis has "
+            "steps of its own",
+            y, x));
+}
+
 }  // namespace
 
 void append_machine_keys(std::vector<Key>& keys) {
@@ -118,6 +132,9 @@ void append_machine_keys(std::vector<Key>& keys) {
     }));
     keys.push_back(number("max_jerk_mm_s3", {0, 1e9},
                           [](Draft& d, double v) { d.printer.max_jerk_mm_s3 = v; }));
+    // Beyond, a short line is hardly begun before it ends.
+    keys.push_back(number("minimum_cruise_ratio", {0, 0.95},
+                          [](Draft& d, double v) { d.printer.minimum_cruise_ratio = v; }));
     keys.push_back(towers_key("delta.arm_mm", {1, 10'000}, &DeltaFrame::arm_mm));
     keys.push_back(towers_key("delta.radius_mm", {1, 10'000}, &DeltaFrame::radius_mm));
     keys.push_back(towers_key("delta.tower_angle_deg", {-360, 360}, &DeltaFrame::tower_angle_deg));
@@ -143,6 +160,17 @@ Problems machine_problems(const Printer& printer, const Given& given) {
     }
     if (printer.max_jerk_mm_s3 > 0 && printer.max_jerk_mm_s3 < 1)
         problems.emplace_back("max_jerk_mm_s3", ": expected 0 for no limit, or a number from 1 on");
+    const double slowest_mm_s2 = std::min(printer.axes[axis_x].max_acceleration_mm_s2,
+                                          printer.axes[axis_y].max_acceleration_mm_s2);
+    // Where firmwares speak of jerk they mean a jump in speed, some 10 mm/s.
+    if (printer.max_jerk_mm_s3 >= 1 && printer.max_jerk_mm_s3 < slowest_mm_s2)
+        problems.emplace_back(
+            "max_jerk_mm_s3",
+            formatted(": with %g no axis gets to its max_acceleration_mm_s2 within a second, and "
+                      "every move would crawl; it is a change of acceleration, not the jump in "
+                      "speed that some firmwares call jerk: 100000 is a start, 0 no limit",
+                      printer.max_jerk_mm_s3));
+    append_belt_problems(printer, problems);
     append_start_problems(printer, given, problems);
     append_shaper_problems(printer, given, problems);
     const auto& late_ns = printer.timing.late_ns;

@@ -18,6 +18,7 @@
 #include "base/nearest_name.h"
 #include "target/config/heater_keys.h"
 #include "target/config/homing_keys.h"
+#include "target/config/idle_keys.h"
 #include "target/config/keys.h"
 #include "target/config/life_keys.h"
 #include "target/config/machine_keys.h"
@@ -231,7 +232,8 @@ void Walk::check_machine() {
     const auto given = [this](const std::string& path) { return places_.count(path) != 0; };
     for (const auto& problems :
          {machine_problems(draft_.printer, given), homing_problems(draft_.printer, given),
-          heat_problems(draft_.printer, given), life_problems(draft_.printer)})
+          heat_problems(draft_.printer, given), life_problems(draft_.printer),
+          idle_problems(draft_.printer, given)})
         for (const auto& [path, message] : problems) {
             const auto& calibrated = draft_.printer.calibrated;
             const bool is_calibrated =

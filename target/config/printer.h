@@ -17,6 +17,7 @@
 //  8. A delta's arms reach the whole of its reach_mm, at flattest_arm_share of their length at the most, and
 //     its start lies within.
 //  9. held_speed_mm_s() of all axes together asks no motor for more than held_steps_per_s().
+// 10. No key of a file is one that nothing looks at, and none contradicts another as docs/configuration.md says.
 
 #pragma once
 
@@ -91,7 +92,8 @@ struct Printer {
     DeltaFrame delta;
     std::array<InputShaper, 3> shapers;  // of x, y and z
     double pressure_advance_s = 0, pressure_smooth_s = 0.04;
-    double max_jerk_mm_s3 = 0;            // 0: no limit
+    double max_jerk_mm_s3 = 0;  // 0: no limit
+    double minimum_cruise_ratio = 0;
     std::array<double, 3> backlash_mm{};  // of the motors of x, y and z
     double junction_deviation_mm = 0.02;
     std::array<double, 3> start_mm{};            // where the head stands when a print begins

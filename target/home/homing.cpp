@@ -24,9 +24,13 @@ double endstop_mm(const config::Printer& printer, std::size_t axis) {
     return endstop.at_mm.value_or(endstop.at_high_end ? limits.max_mm : limits.min_mm);
 }
 
-// From the lowest place of a carriage, with the head on the bed and farthest from it, to its endstop.
+// From the other end of the axis to its endstop; of a carriage from its lowest place, with the head on the bed and
+// farthest from it.
 double length_mm(const config::Printer& printer, std::size_t axis) {
-    if (!is_delta(printer)) return printer.axes[axis].max_mm - printer.axes[axis].min_mm;
+    if (!is_delta(printer))
+        return printer.endstops[axis].at_high_end
+                   ? endstop_mm(printer, axis) - printer.axes[axis].min_mm
+                   : printer.axes[axis].max_mm - endstop_mm(printer, axis);
     const config::DeltaFrame& frame = printer.delta;
     const double off_mm = frame.radius_mm[axis] + frame.reach_mm;
     const double arm_mm = frame.arm_mm[axis];

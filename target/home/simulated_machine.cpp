@@ -43,9 +43,14 @@ motion::Point first_place(const config::Printer& printer) {
         const config::Axis& limits = printer.axes[axis];
         return is_delta ? 0 : (limits.min_mm + limits.max_mm) / 2;
     };
-    constexpr double beside_mm = 30;
-    return {middle(axis_x) + beside_mm, middle(axis_y) - beside_mm,
-            printer.axes[axis_z].min_mm + beside_mm};
+    const auto beside_mm = [&](std::size_t axis) {
+        constexpr double most_mm = 30;
+        const config::Axis& limits = printer.axes[axis];
+        const double length_mm = is_delta ? printer.delta.reach_mm : limits.max_mm - limits.min_mm;
+        return std::min(most_mm, length_mm / 3);
+    };
+    return {middle(axis_x) + beside_mm(axis_x), middle(axis_y) - beside_mm(axis_y),
+            printer.axes[axis_z].min_mm + beside_mm(axis_z)};
 }
 
 // Where the endstops trigger; of a delta the height of the carriage.

@@ -209,6 +209,8 @@ Status check(const Limits& limits) {
         return unfit("the junction deviation", "0 or a positive number of mm");
     if (limits.jerk_mm_s3 != 0 && !(limits.jerk_mm_s3 >= 1 && limits.jerk_mm_s3 <= 1e12))
         return unfit("the limit of jerk", "0 or from 1 to 1e12 mm/s^3");
+    if (!(limits.minimum_cruise_ratio >= 0 && limits.minimum_cruise_ratio < 1))
+        return unfit("the minimum cruise ratio", "from 0 to less than 1");
     if (!is_positive(limits.extruder_jump_mm_s))
         return unfit("the extruder's jump in speed", "a positive number of mm/s");
     return Done{};

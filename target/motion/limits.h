@@ -38,6 +38,8 @@ struct Limits {
     double junction_deviation_mm = 0.02;
     double extruder_jump_mm_s = 1;
     double jerk_mm_s3 = 0;  // along the path; 0: no limit
+    // Of every way from one slow place to the next this share is gone at an even speed; below 1.
+    double minimum_cruise_ratio = 0;
     BedShape bed{};
     double bed_jump_mm_s = 1;
 };
@@ -55,7 +57,7 @@ struct MoveLimits {
     double acceleration_mm_s2 = 0;  // along the path
 };
 
-// All limits are positive (the junction deviation may be 0) and at most 1e9; otherwise what is not.
+// All limits are positive (the junction deviation and the ratio may be 0) and at most 1e9; otherwise what is not.
 Status check(const Limits& limits);
 
 MoveLimits limits_of(const Move& move, const Limits& limits);

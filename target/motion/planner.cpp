@@ -66,11 +66,13 @@ Status Planner::push(const Move& move) {
     next.move = move;
     next.length_mm = length_mm;
     next.limits = limits_of(move, limits_);
-    // An even ramp up and down takes no longer than twice this.
-    const double ramp_s = std::sqrt(length_mm / next.limits.acceleration_mm_s2);
+    const bool is_extruder_alone = tangent_at(move.path, 0) == Point{};
+    next.ramps_mm = is_extruder_alone ? length_mm : (1 - limits_.minimum_cruise_ratio) * length_mm;
+    // An even ramp up and down takes no longer than twice this, the cruise between them counted in.
+    const double ramp_s = length_mm / std::sqrt(next.limits.acceleration_mm_s2 * next.ramps_mm);
     if (!(length_mm / next.limits.speed_mm_s + 2 * ramp_s <= longest_s))
         return refused("a move would take longer than 11 days: its speed is too low");
-    next.junction_mm2_s2 = junction_mm2_s2(next);
+    next.corner_mm2_s2 = next.junction_mm2_s2 = corner_mm2_s2(next);
     next.dwell_ns = dwell_ns_;
 
     ++size_;
@@ -100,7 +102,7 @@ Status Planner::check(const Move& move, double length_mm) const {
     return Done{};
 }
 
-double Planner::junction_mm2_s2(const Entry& next) const {
+double Planner::corner_mm2_s2(const Entry& next) const {
     if (rests_) return 0;
     const double speed_mm_s = std::min({last_limits_.speed_mm_s, next.limits.speed_mm_s,
                                         corner_speed_mm_s(last_, next.move, limits_)});
@@ -118,40 +120,85 @@ void Planner::flush() {
 }
 
 void Planner::settle() {
-    const std::size_t final = limit_backwards();
-    limit_forwards();
+    constexpr Pass smoothed{&Entry::ramps_mm, &Entry::corner_mm2_s2, &Entry::smoothed_mm2_s2};
+    constexpr Pass real{&Entry::length_mm, &Entry::junction_mm2_s2, &Entry::start_mm2_s2};
+    std::size_t final = 0;
+    if (has_ratio()) {
+        (void)limit_backwards(smoothed);
+        limit_forwards(smoothed);
+        final = limit_peaks();
+        (void)limit_backwards(real);
+    } else {
+        final = limit_backwards(real);
+    }
+    limit_forwards(real);
     settled_ = std::max({final, flushed_, full() ? size_ / share_to_release : 0});
 }
 
 // Returns how many moves at the front no later move can change: those before the last junction
 // whose own limit is the tightest.
-std::size_t Planner::limit_backwards() {
+std::size_t Planner::limit_backwards(const Pass& pass) {
     std::size_t final = 0;
     double end_mm2_s2 = 0;
     for (std::size_t i = size_ - 1; i > 0; --i) {
         Entry& entry = at(i);
-        const double reachable = reachable_mm2_s2(end_mm2_s2, entry);
-        if (final == 0 && entry.junction_mm2_s2 <= reachable) final = i;
-        end_mm2_s2 = entry.start_mm2_s2 = std::min(entry.junction_mm2_s2, reachable);
+        const double most = entry.*pass.most_mm2_s2;
+        const double reachable = reachable_mm2_s2(end_mm2_s2, entry.*pass.way_mm, entry.limits);
+        if (final == 0 && most <= reachable) final = i;
+        end_mm2_s2 = entry.*pass.start_mm2_s2 = std::min(most, reachable);
     }
     return final;
 }
 
-void Planner::limit_forwards() {
+void Planner::limit_forwards(const Pass& pass) {
     for (std::size_t i = 0; i + 1 < size_; ++i) {
         const Entry& entry = at(i);
-        Entry& next = at(i + 1);
-        next.start_mm2_s2 =
-            std::min(next.start_mm2_s2, reachable_mm2_s2(entry.start_mm2_s2, entry));
+        double& end_mm2_s2 = at(i + 1).*pass.start_mm2_s2;
+        end_mm2_s2 = std::min(end_mm2_s2, reachable_mm2_s2(entry.*pass.start_mm2_s2,
+                                                           entry.*pass.way_mm, entry.limits));
     }
 }
 
-double Planner::reachable_mm2_s2(double speed_mm2_s2, const Entry& entry) const {
-    const double acceleration_mm_s2 = entry.limits.acceleration_mm_s2;
-    if (!(limits_.jerk_mm_s3 > 0)) return speed_mm2_s2 + 2 * acceleration_mm_s2 * entry.length_mm;
-    const double reached_mm_s = reachable_mm_s(std::sqrt(speed_mm2_s2), entry.length_mm,
-                                               {acceleration_mm_s2, limits_.jerk_mm_s3});
+// Between two junctions that it passes at their own limit, the smoothed plan rises and falls once; the highest speed on the
+// way is then the top of all its moves. Returns how many moves at the front no later move can change: those before
+// the last such junction, for what comes before any other may still rise to more.
+std::size_t Planner::limit_peaks() {
+    std::size_t first = 0;
+    double peak_mm2_s2 = gone_peak_mm2_s2_;
+    for (std::size_t i = 0; i < size_; ++i) {
+        const bool is_last = i + 1 == size_;
+        peak_mm2_s2 = std::max(
+            peak_mm2_s2, smoothed_peak_mm2_s2(at(i), is_last ? 0 : at(i + 1).smoothed_mm2_s2));
+        if (!is_last && !is_slow_place(at(i + 1))) continue;
+        for (std::size_t k = first; k <= i; ++k) {
+            at(k).peak_mm2_s2 = peak_mm2_s2;
+            at(k).junction_mm2_s2 = std::min(at(k).corner_mm2_s2, peak_mm2_s2);
+        }
+        if (is_last) break;
+        first = i + 1;
+        peak_mm2_s2 = 0;
+    }
+    return first;
+}
+
+double Planner::reachable_mm2_s2(double speed_mm2_s2, double way_mm,
+                                 const MoveLimits& limits) const {
+    if (!(limits_.jerk_mm_s3 > 0)) return speed_mm2_s2 + 2 * limits.acceleration_mm_s2 * way_mm;
+    const double reached_mm_s = reachable_mm_s(std::sqrt(speed_mm2_s2), way_mm,
+                                               {limits.acceleration_mm_s2, limits_.jerk_mm_s3});
     return reached_mm_s * reached_mm_s;
+}
+
+double Planner::smoothed_peak_mm2_s2(const Entry& entry, double end_mm2_s2) const {
+    const auto [top_mm_s, acceleration_mm_s2] = entry.limits;
+    const double v = std::sqrt(entry.smoothed_mm2_s2), w = std::sqrt(end_mm2_s2);
+    const double peak_mm_s =
+        limits_.jerk_mm_s3 > 0
+            ? s_curve_peak_mm_s(entry.ramps_mm, v, w, top_mm_s,
+                                {acceleration_mm_s2, limits_.jerk_mm_s3})
+            : trapezoid_peak_mm_s(entry.ramps_mm, v, w, top_mm_s, acceleration_mm_s2);
+    // Not below its ends by the rounding of a root.
+    return std::max({peak_mm_s * peak_mm_s, entry.smoothed_mm2_s2, end_mm2_s2});
 }
 
 bool Planner::pop(PlannedMove& planned) {
@@ -167,13 +214,17 @@ bool Planner::pop(PlannedMove& planned) {
     planned.start_ns = time_ns_;
     planned.start_part_ns = time_part_ns_;
     const double start_mm_s = std::sqrt(entry.start_mm2_s2), end_mm_s = std::sqrt(end_mm2_s2);
-    const auto [top_mm_s, acceleration_mm_s2] = entry.limits;
+    const double acceleration_mm_s2 = entry.limits.acceleration_mm_s2;
+    const double top_mm_s = has_ratio()
+                                ? std::min(entry.limits.speed_mm_s, std::sqrt(entry.peak_mm2_s2))
+                                : entry.limits.speed_mm_s;
     planned.profile =
         limits_.jerk_mm_s3 > 0
             ? s_curve(entry.length_mm, start_mm_s, end_mm_s, top_mm_s,
                       {acceleration_mm_s2, limits_.jerk_mm_s3})
             : trapezoid(entry.length_mm, start_mm_s, end_mm_s, top_mm_s, acceleration_mm_s2);
     advance_ns(planned.profile.duration_s * ns_per_s);
+    gone_peak_mm2_s2_ = size_ > 1 && !is_slow_place(at(1)) ? entry.peak_mm2_s2 : 0;
     first_ = first_ + 1 < ring_.size() ? first_ + 1 : 0;
     --size_;
     --settled_;

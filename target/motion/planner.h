@@ -5,6 +5,8 @@
 // end) and then forwards (each must be able to reach it), in squares, where even acceleration is a
 // sum. Moves wait in a ring. When it is full, those go out whose speeds no later move can change,
 // or else, to make room, a quarter of the ring with the speeds that are safe for certain.
+// With a ratio of cruising the same is first done as if of every move only the rest of its length were there to
+// change speed in. What is fastest in that plan between two slow places is the top speed between them in the real one.
 //
 // Contract
 //  1. Planned moves come out in the order in which moves went in, each once. The first starts at
@@ -12,12 +14,15 @@
 //     before a flush or dwell ends at speed 0.
 //  2. No planned move exceeds its MoveLimits, no junction its corner speed.
 //     With a limit of jerk the acceleration never changes faster, and is 0 at every end of a move.
-//  3. With fewer than `capacity` moves between flushes the plan is the fastest that keeps 2.
+//  3. With fewer than `capacity` moves between flushes the plan is the fastest that keeps 2 and 7.
 //     Otherwise each move is planned with at least three quarters of the capacity known beyond it.
 //  4. Start times are whole nanoseconds plus a remainder that is carried along: the sum of a
 //     print's moves does not depend on how often it was rounded.
 //  5. Nothing is allocated after create().
 //  6. A refused move (error) leaves the planner as it was.
+//  7. With a ratio of cruising, a way from one stop to the next on which nothing else limits the speed is gone at an even
+//     speed for that share of it: of one move, or without a limit of jerk of any number that go straight on. The
+//     extruder alone is left as it is: nothing shakes.
 
 #pragma once
 
@@ -76,21 +81,37 @@ private:
     struct Entry {
         Move move;
         double length_mm = 0;
+        double ramps_mm = 0;  // of its length, what is there to change speed in
         MoveLimits limits;
-        double junction_mm2_s2 = 0;  // largest squared speed at its start
+        double corner_mm2_s2 = 0;    // largest squared speed at its start
+        double smoothed_mm2_s2 = 0;  // planned there over ramps_mm
+        double peak_mm2_s2 = 0;      // the largest of that plan from one slow place to the next
+        double junction_mm2_s2 = 0;  // corner_mm2_s2 within the peaks
         double start_mm2_s2 = 0;     // planned
         double dwell_ns = 0;         // before it
+    };
+    // What a look-ahead reads of each move, and writes.
+    struct Pass {
+        double Entry::*way_mm;
+        double Entry::*most_mm2_s2;
+        double Entry::*start_mm2_s2;
     };
 
     Planner(const Limits& limits, std::size_t capacity) : limits_(limits), ring_(capacity) {}
     Entry& at(std::size_t index);
     Status check(const Move& move, double length_mm) const;
-    double junction_mm2_s2(const Entry& next) const;
+    double corner_mm2_s2(const Entry& next) const;
+    bool has_ratio() const { return limits_.minimum_cruise_ratio > 0; }
     void settle();
-    std::size_t limit_backwards();
-    void limit_forwards();
-    // The largest squared speed at the other end of a move, from this one at one end.
-    double reachable_mm2_s2(double speed_mm2_s2, const Entry& entry) const;
+    std::size_t limit_backwards(const Pass& pass);
+    void limit_forwards(const Pass& pass);
+    std::size_t limit_peaks();
+    bool is_slow_place(const Entry& entry) const {
+        return entry.smoothed_mm2_s2 == entry.corner_mm2_s2;
+    }
+    // The largest squared speed at the other end of a way, from this one at one end.
+    double reachable_mm2_s2(double speed_mm2_s2, double way_mm, const MoveLimits& limits) const;
+    double smoothed_peak_mm2_s2(const Entry& entry, double end_mm2_s2) const;
     void advance_ns(double time_ns);
 
     Limits limits_;
@@ -98,7 +119,9 @@ private:
     std::size_t first_ = 0, size_ = 0;
     std::size_t settled_ = 0;  // moves at the front that may go out
     std::size_t flushed_ = 0;  // moves at the front that must
-    bool begun_ = false;       // `last_` and its limits are those of a move
+    // Of moves that are gone, on the way to the first slow place in the ring.
+    double gone_peak_mm2_s2_ = 0;
+    bool begun_ = false;  // `last_` and its limits are those of a move
     Move last_;
     MoveLimits last_limits_;
     bool rests_ = true;  // before the next move

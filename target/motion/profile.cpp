@@ -69,12 +69,19 @@ double Profile::speed_at(double time_s) const {
     return phase.speed_mm_s + t * (phase.acceleration_mm_s2 + t * phase.jerk_mm_s3 / 2);
 }
 
-Profile trapezoid(double length_mm, double start_speed_mm_s, double end_speed_mm_s,
-                  double top_speed_mm_s, double acceleration_mm_s2) {
+double trapezoid_peak_mm_s(double length_mm, double start_speed_mm_s, double end_speed_mm_s,
+                           double top_speed_mm_s, double acceleration_mm_s2) {
     const double v = start_speed_mm_s, w = end_speed_mm_s;
     // Where speeding up meets slowing down, if the top is not reached before.
     const double meeting_mm_s = std::sqrt((v * v + w * w) / 2 + acceleration_mm_s2 * length_mm);
-    const double peak_mm_s = std::max({std::min(meeting_mm_s, top_speed_mm_s), v, w});
+    return std::max({std::min(meeting_mm_s, top_speed_mm_s), v, w});
+}
+
+Profile trapezoid(double length_mm, double start_speed_mm_s, double end_speed_mm_s,
+                  double top_speed_mm_s, double acceleration_mm_s2) {
+    const double v = start_speed_mm_s, w = end_speed_mm_s;
+    const double peak_mm_s =
+        trapezoid_peak_mm_s(length_mm, v, w, top_speed_mm_s, acceleration_mm_s2);
     const double up_mm = std::min(length_mm, ramp_mm(v, peak_mm_s, acceleration_mm_s2));
     const double down_mm = std::min(length_mm - up_mm, ramp_mm(w, peak_mm_s, acceleration_mm_s2));
     const double even_mm = std::max(0.0, length_mm - up_mm - down_mm);

@@ -10,6 +10,7 @@
 //  4. So does s_curve(), and its acceleration is 0 at both ends, never exceeds the one given and never
 //     changes faster than the jerk. It is the fastest of those that rise to one top speed and fall from it.
 //  5. reachable_mm_s() is the largest speed that such a rise gets to over a length.
+//  6. trapezoid_peak_mm_s() and s_curve_peak_mm_s() are the highest speeds of these profiles.
 
 #pragma once
 
@@ -52,6 +53,8 @@ inline double time_in_phase(const Phase& phase, double distance_mm) {
 }
 
 // The speeds at the ends must be reachable from each other over the length.
+double trapezoid_peak_mm_s(double length_mm, double start_speed_mm_s, double end_speed_mm_s,
+                           double top_speed_mm_s, double acceleration_mm_s2);
 Profile trapezoid(double length_mm, double start_speed_mm_s, double end_speed_mm_s,
                   double top_speed_mm_s, double acceleration_mm_s2);
 
@@ -62,6 +65,8 @@ struct RampLimits {
 
 double reachable_mm_s(double speed_mm_s, double length_mm, const RampLimits& limits);
 
+double s_curve_peak_mm_s(double length_mm, double start_speed_mm_s, double end_speed_mm_s,
+                         double top_speed_mm_s, const RampLimits& limits);
 Profile s_curve(double length_mm, double start_speed_mm_s, double end_speed_mm_s,
                 double top_speed_mm_s, const RampLimits& limits);
 

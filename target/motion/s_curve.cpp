@@ -71,20 +71,6 @@ private:
     double distance_mm_ = 0, time_s_ = 0;
 };
 
-// The highest speed from which both ramps fit the length.
-double peak_mm_s(double v, double w, double top, double way_mm, const RampLimits& limits) {
-    const auto fits = [&](double peak) {
-        return length_mm(v, peak, limits) + length_mm(w, peak, limits) <= way_mm;
-    };
-    double low = std::max(v, w), high = std::max(top, low);
-    if (fits(high)) return high;
-    for (int look = 0; look < most_looks; ++look) {
-        const double middle = low + (high - low) / 2;
-        (fits(middle) ? low : high) = middle;
-    }
-    return low;
-}
-
 }  // namespace
 
 double reachable_mm_s(double speed_mm_s, double length_mm, const RampLimits& limits) {
@@ -106,10 +92,24 @@ double reachable_mm_s(double speed_mm_s, double length_mm, const RampLimits& lim
     return v + y * y;
 }
 
+// The highest speed from which both ramps fit the length.
+double s_curve_peak_mm_s(double way_mm, double v, double w, double top, const RampLimits& limits) {
+    const auto fits = [&](double peak) {
+        return length_mm(v, peak, limits) + length_mm(w, peak, limits) <= way_mm;
+    };
+    double low = std::max(v, w), high = std::max(top, low);
+    if (fits(high)) return high;
+    for (int look = 0; look < most_looks; ++look) {
+        const double middle = low + (high - low) / 2;
+        (fits(middle) ? low : high) = middle;
+    }
+    return low;
+}
+
 Profile s_curve(double way_mm, double start_speed_mm_s, double end_speed_mm_s,
                 double top_speed_mm_s, const RampLimits& limits) {
     const double v = start_speed_mm_s, w = end_speed_mm_s;
-    const double peak = peak_mm_s(v, w, top_speed_mm_s, way_mm, limits);
+    const double peak = s_curve_peak_mm_s(way_mm, v, w, top_speed_mm_s, limits);
     const double up_mm = std::min(way_mm, length_mm(v, peak, limits));
     const double down_mm = std::min(way_mm - up_mm, length_mm(w, peak, limits));
     Profile profile;

@@ -35,6 +35,7 @@ motion::Limits motion_limits(const config::Printer& printer) {
                           printer.axes[i].max_acceleration_mm_s2};
     limits.junction_deviation_mm = printer.junction_deviation_mm;
     limits.jerk_mm_s3 = printer.max_jerk_mm_s3;
+    limits.minimum_cruise_ratio = printer.minimum_cruise_ratio;
     if (const auto bed = bed_of(printer)) limits.bed = bed->shape();
     return limits;
 }

@@ -13,6 +13,9 @@
 #include <cstring>
 
 namespace lyr::thermal {
+
+using config::open_share, config::shorted_share;
+
 namespace {
 
 Diagnostic unreadable(const std::string& path, const std::string& why) {
@@ -67,7 +70,7 @@ Measured measure(const SensorScale& scale, double raw) {
     if (share <= shorted_share) measured.wiring = Wiring::shorted;
     const double seen = share < open_share ? std::max(share, shorted_share) : open_share;
     measured.temperature_c =
-        temperature_c(scale.resistor, resistance_of(seen, settings.pullup_ohm));
+        temperature_c(scale.resistor, config::resistance_of(seen, settings.pullup_ohm));
     return measured;
 }
 
@@ -76,7 +79,7 @@ double raw_of(const SensorScale& scale, double temperature_c) {
     if (settings.kind == config::SensorKind::celsius)
         return temperature_c / settings.celsius_per_unit;
     return settings.full_scale *
-           share_of(resistance_ohm(scale.resistor, temperature_c), settings.pullup_ohm);
+           config::share_of(resistance_ohm(scale.resistor, temperature_c), settings.pullup_ohm);
 }
 
 }  // namespace lyr::thermal

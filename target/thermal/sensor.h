@@ -19,7 +19,7 @@
 #include <string>
 
 #include "base/diagnostic.h"
-#include "target/thermal/thermistor.h"
+#include "target/config/thermistor.h"
 
 namespace lyr::thermal {
 
@@ -50,15 +50,11 @@ struct Measured {
 // A sensor's settings with its curve worked out.
 struct SensorScale {
     explicit SensorScale(const config::Sensor& sensor)
-        : settings(sensor), resistor(resistor_of(sensor)) {}
+        : settings(sensor), resistor(config::resistor_of(sensor)) {}
 
     config::Sensor settings;
-    Resistor resistor;
+    config::Resistor resistor;
 };
-
-// Of full scale, how near to its ends a reading is no sensor any more: a 100 kOhm thermistor under 4.7 kOhm
-// is at 0.998 below -40 °C, and at 0.002 it would have 10 Ohm.
-inline constexpr double open_share = 0.998, shorted_share = 0.002;
 
 Measured measure(const SensorScale& scale, double raw);
 double raw_of(const SensorScale& scale, double temperature_c);

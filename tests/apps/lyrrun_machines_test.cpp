@@ -62,3 +62,29 @@ TEST_CASE("lyrrun: over a crooked bed every pulse is within half a microstep of 
         CHECK(ended.out.find("within half a microstep everywhere") != std::string::npos);
     }
 }
+
+TEST_CASE("lyrrun: a ratio of cruising costs time, and every pulse is within half a microstep") {
+    const Folder folder("cruise");
+    const std::string print = write_print(
+        "cruise", {draw_square, draw_arcs, draw_circles, draw_climb}, {0, false, 60, 40});
+    for (const char* printer : {"corexy", "delta", "cartesian"}) {
+        CAPTURE(printer);
+        double last_s = 0;
+        for (const char* ratio : {"0", "0.5", "0.9"}) {
+            folder.write("p.toml",
+                         std::string("minimum_cruise_ratio = ") + ratio + '\n' +
+                             text_of(std::string(LYR_FIXTURES "/printers/") + printer + ".toml"));
+            const Ended text = folder.run("lyrrun " + print + " --simulate --printer p.toml");
+            CHECK(text.status == 0);
+            CHECK(text.out.find("within half a microstep everywhere") != std::string::npos);
+            const Ended ended =
+                folder.run("lyrrun " + print + " --simulate --json --printer p.toml");
+            const std::string key = "\"print_time_s\":";
+            const std::size_t at = ended.out.find(key);
+            REQUIRE(at != std::string::npos);
+            const double time_s = std::stod(ended.out.substr(at + key.size()));
+            CHECK(time_s > last_s);
+            last_s = time_s;
+        }
+    }
+}

@@ -63,7 +63,8 @@ TEST_CASE("homing keys: slips come with line and suggestion") {
                 "\"as_is\", \"up\", \"down\" or \"none\"");
     check_error("[probe]\ninput = { pull = \"up\" }\n", 2, "expected `line`");
     check_error("[probe]\noffset_mm = [1, 2]\n", 2, "[x, y, z]");
-    check_error("[probe]\nspeed_mm_s = 1\nslow_mm_s = 2\n", 3, "faster than probe.speed_mm_s = 1");
+    check_error("[probe]\ninput = 9\nspeed_mm_s = 1\nslow_mm_s = 2\n", 4,
+                "faster than probe.speed_mm_s = 1");
     check_error("[mesh]\nheights_mm = [[0, 1], [2]]\n", 2, "rows");
     check_error("[mesh]\nheights_mm = [[0, 1], [2, 3]]\narea_mm = [0, 0, 9, 9]\n", 2,
                 "2 rows of 2 heights are not the mesh.points = [5, 5]");

@@ -95,6 +95,10 @@ TEST_CASE("machine: shapers and pressure advance, and what they need") {
     check_error("[shaper.y]\nfrequency_hz = 40\n", 1, "does nothing without shaper.y.kind");
     check_error("[timing]\nlate_us = 5000\n", 2, "later than pulse.late_limit_ms = 5");
     check_error("max_jerk_mm_s3 = 0.5\n", 1, "from 1 on");
+    CHECK(read("").minimum_cruise_ratio == 0);
+    CHECK(read("minimum_cruise_ratio = 0.5\n").minimum_cruise_ratio == 0.5);
+    check_error("minimum_cruise_ratio = 1\n", 1, "from 0 to 0.95");
+    check_error("min_cruise_ratio = 0.5\n", 1, "did you mean `minimum_cruise_ratio`?");
     check_error("[shaper.e]\n", 1, "unknown key `e` in [shaper]");
     check_error("[pressure_advance]\nadvance_s = -1\n", 2, "from 0 to 2");
     check_error("[pressure_advance]\nadvance = 1\n", 2, "did you mean `advance_s`?");

@@ -43,7 +43,7 @@ max_acceleration_mm_s2 = 5000
 [heater.tool]
 output = "GPIO9"
 sensor.kind = "table"
-sensor.points = [[0, 9000], [90, 700]]
+sensor.points = [[0, 330000], [250, 230]]
 [input.pause]
 line = 7 # left
 pull = "up"

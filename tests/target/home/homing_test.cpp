@@ -244,3 +244,30 @@ TEST_CASE(
     CHECK(b->head.x - played.machine.head().x ==
           doctest::Approx(a->head.x - plain.machine.head().x + 0.1).epsilon(1e-3));
 }
+
+TEST_CASE("homing: an endstop farther beyond its axis than the margin was taken for dead") {
+    for (const bool high : {false, true}) {
+        config::Printer printer = machine_of(config::Kinematics::cartesian);
+        const config::Axis& x = printer.axes[config::axis_x];
+        printer.endstops[config::axis_x].at_high_end = high;
+        printer.endstops[config::axis_x].at_mm = high ? x.max_mm + 30 : x.min_mm - 30;
+        printer.simulated.head_mm = {high ? x.min_mm : x.max_mm, 100, 50};
+        Scene scene(printer);
+        const Result<home::Homed> homed = scene.home();
+        REQUIRE_MESSAGE(homed.ok(), (homed.ok() ? "" : to_string(homed.error())));
+        CHECK(scene.off_steps(homed->head) < 1);
+    }
+}
+
+TEST_CASE("homing: a simulated machine of 25 mm began beyond its own axes") {
+    config::Printer printer = machine_of(config::Kinematics::cartesian);
+    for (const std::size_t axis : {config::axis_x, config::axis_y, config::axis_z}) {
+        printer.axes[axis].min_mm = 0;
+        printer.axes[axis].max_mm = 25;
+        printer.homing.margin_mm = 1;
+    }
+    Scene scene(printer);
+    const Result<home::Homed> homed = scene.home();
+    REQUIRE_MESSAGE(homed.ok(), (homed.ok() ? "" : to_string(homed.error())));
+    CHECK(scene.off_steps(homed->head) < 1);
+}

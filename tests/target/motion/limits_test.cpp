@@ -201,7 +201,13 @@ TEST_CASE("limits: nonsense is named") {
         limits = test::even_limits(1, 1);
         limits.junction_deviation_mm = bad;
         CHECK(check(limits).ok() == (bad == 0));
+        limits = test::even_limits(1, 1);
+        limits.minimum_cruise_ratio = bad;
+        CHECK(check(limits).ok() == (bad == 0));
     }
+    Limits limits = test::even_limits(1, 1);
+    limits.minimum_cruise_ratio = 1;
+    CHECK(!check(limits).ok());
 }
 
 }  // namespace lyr::motion

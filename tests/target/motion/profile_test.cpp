@@ -122,4 +122,28 @@ TEST_CASE("profile 1, 2, 4, 5: S-curves keep their limits, and reach what is rea
     }
 }
 
+TEST_CASE(
+    "profile 6: a peak is the highest speed of its profile, and over a part of the length lower") {
+    std::mt19937 random(8);
+    std::uniform_real_distribution<double> share(0, 1);
+    const auto highest = [](const Profile& profile) {
+        double speed = 0;
+        for (const Phase& phase : profile.phases) speed = std::max(speed, phase.speed_mm_s);
+        return speed;
+    };
+    for (int i = 0; i < 1000; ++i) {
+        const double length = std::pow(10, 4 * share(random) - 2), top = 5 + 300 * share(random);
+        const RampLimits limits{100 + 5000 * share(random), std::pow(10, 4 + 2 * share(random))};
+        const double a = limits.acceleration_mm_s2, part = length * (0.1 + 0.8 * share(random));
+        const double v = std::min(4.0, reachable_mm_s(0, part, limits)) * share(random);
+        const double level = trapezoid_peak_mm_s(length, v, 0, top, a);
+        const double bent = s_curve_peak_mm_s(length, v, 0, top, limits);
+        REQUIRE(level == doctest::Approx(highest(trapezoid(length, v, 0, top, a))));
+        REQUIRE(bent == doctest::Approx(highest(s_curve(length, v, 0, top, limits))));
+        REQUIRE(trapezoid_peak_mm_s(part, v, 0, top, a) <= level);
+        REQUIRE(s_curve_peak_mm_s(part, v, 0, top, limits) <= bent);
+        REQUIRE(bent <= level * (1 + 1e-9));
+    }
+}
+
 }  // namespace lyr::motion

@@ -1,16 +1,14 @@
 // Steinhart-Hart's inverse is the one real root of a cubic; platinum's is Newton's, since its curve is almost
 // a straight line.
 
-#include "target/thermal/thermistor.h"
+#include "target/config/thermistor.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-namespace lyr::thermal {
+namespace lyr::config {
 namespace {
-
-using config::ResistancePoint;
 
 constexpr double kelvin_at_0_c = 273.15;
 // IEC 60751, for platinum of 3851 ppm/K.
@@ -128,24 +126,24 @@ SteinhartHart through(std::span<const ResistancePoint, 3> points) {
     return curve;
 }
 
-Resistor resistor_of(const config::Sensor& sensor) {
+Resistor resistor_of(const Sensor& sensor) {
     switch (sensor.kind) {
-        case config::SensorKind::epcos_100k:
+        case SensorKind::epcos_100k:
             return through(epcos_100k);
-        case config::SensorKind::semitec_104gt2:
+        case SensorKind::semitec_104gt2:
             return through(semitec_104gt2);
-        case config::SensorKind::honeywell_100k:
+        case SensorKind::honeywell_100k:
             return honeywell_100k;
-        case config::SensorKind::pt1000:
+        case SensorKind::pt1000:
             return Platinum{};
-        case config::SensorKind::beta:
+        case SensorKind::beta:
             return Beta{25, sensor.r25_ohm, sensor.beta_k};
-        case config::SensorKind::steinhart_hart:
+        case SensorKind::steinhart_hart:
             return through(std::span(sensor.points).first<3>());
-        case config::SensorKind::table:
+        case SensorKind::table:
             return ResistanceTable{sensor.points};
-        case config::SensorKind::ntc_100k_3950:
-        case config::SensorKind::celsius:
+        case SensorKind::ntc_100k_3950:
+        case SensorKind::celsius:
             break;
     }
     return ntc_100k_3950;
@@ -159,4 +157,4 @@ double resistance_of(double share, double pullup_ohm) {
     return pullup_ohm * share / (1 - share);
 }
 
-}  // namespace lyr::thermal
+}  // namespace lyr::config

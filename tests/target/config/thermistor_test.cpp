@@ -1,13 +1,13 @@
-// Contract of target/thermal/thermistor.h, by number.
+// Contract of target/config/thermistor.h, by number.
 
-#include "target/thermal/thermistor.h"
+#include "target/config/thermistor.h"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 
 using namespace lyr;
-using namespace lyr::thermal;
+using namespace lyr::config;
 
 namespace {
 
