@@ -10,7 +10,7 @@
 #                 --klipper); docs/exports.md
 # make board      only what a printer's board needs (lyrrun, lyrctl, lyrview), into build-board/
 # make cross      the same (lyrctl without its page) for 64-bit and 32-bit ARM boards with Debian 12 or later, into build-arm64/ and build-armhf/
-# make test-cross the tests of what runs on a board, built for both and run by qemu-user
+# make test-cross the tests of what runs on a board, built for both and run by qemu-user, but for the longest cases
 # make bench      speed beside OpenCASCADE's and PrusaSlicer's, into build-bench/ (needs: tools/setup --bench);
 #                 LYR_BENCH_FILES=folder of STEP files to read
 # make install    into PREFIX (default /usr/local)
@@ -95,9 +95,7 @@ CROSS = arm64 armhf
 cross: $(CROSS:%=cross-%)
 
 cross-%:
-	@tools/setup --cross $* build-$*/sysroot
-	cmake -S . -B build-$* -DCMAKE_BUILD_TYPE=Release -DLYR_KERNEL=OFF -DLYR_PRECOMPILE=OFF -DLYR_ARCH=$* \
-	  -DLYR_SYSROOT=$(CURDIR)/build-$*/sysroot -DCMAKE_TOOLCHAIN_FILE=$(CURDIR)/cmake/cross.cmake
+	tools/cross $* build-$*
 	cmake --build build-$* -j $(JOBS) --target lyrrun lyrctl lyrview
 
 test-cross: $(CROSS:%=test-cross-%)

@@ -81,7 +81,8 @@ function(lyr_room name)
   endif()
 endfunction()
 
-# lyr_test(<name> SOURCES <file>... [ALONE <file>...] LINK <library>...): one doctest program for one room.
+# lyr_test(<name> SOURCES <file>... [ALONE <file>...] LINK <library>...): one doctest program for one room. What its
+# cases of the suite "long" look at, others look at in fewer places: an emulator leaves them out.
 function(lyr_test name)
   cmake_parse_arguments(TEST "" "" "SOURCES;ALONE;LINK" ${ARGN})
   add_executable(${name} ${TEST_SOURCES})
@@ -91,7 +92,7 @@ function(lyr_test name)
     LYR_FIXTURES="${PROJECT_SOURCE_DIR}/fixtures" LYR_BUILD="${PROJECT_BINARY_DIR}")
   lyr_compile_together(${name} ${TEST_ALONE})
   lyr_use_headers(${name})
-  add_test(NAME ${name} COMMAND ${name})
+  add_test(NAME ${name} COMMAND ${name} $<$<BOOL:${CMAKE_CROSSCOMPILING}>:--test-suite-exclude=long>)
   if(CMAKE_CURRENT_SOURCE_DIR MATCHES "^${PROJECT_SOURCE_DIR}/tests/(base|format|target)(/|$)")
     set_property(TEST ${name} PROPERTY LABELS board)
     add_dependencies(board_tests ${name})

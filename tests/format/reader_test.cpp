@@ -139,7 +139,8 @@ TEST_CASE("reader 6: a pipe gives what the file gives, and seeking reads on") {
     }
 }
 
-TEST_CASE("reader: a print can be taken up at any layer, in any order") {
+TEST_CASE("reader: a print can be taken up at any layer, in any order" *
+          doctest::test_suite("long")) {
     const std::string path = random_file("seek", 6);
     const test::Reading whole = test::read_file(path);
     REQUIRE(!whole.error);

@@ -124,7 +124,8 @@ void compare(Reader& reader, const std::vector<Expected>& expected, Quantum quan
 
 }  // namespace
 
-TEST_CASE("writer 1: every call comes out of the reader, rounded by itself") {
+TEST_CASE("writer 1: every call comes out of the reader, rounded by itself" *
+          doctest::test_suite("long")) {
     for (const std::uint32_t nm : {1u, 100u, 1000u, 10000u}) {
         const Quantum quantum{nm};
         const std::string path = test::scratch("round_trip");

@@ -223,7 +223,8 @@ TEST_CASE("writer 5: the file is whole or as it was, and nothing else stays") {
     CHECK(files_in(where) == 1);
 }
 
-TEST_CASE("writer 6: a print that does not fit the memory set aside is the same") {
+TEST_CASE("writer 6: a print that does not fit the memory set aside is the same" *
+          doctest::test_suite("long")) {
     // 30 layers of 1.5 MiB: the first ones go by the temporary file.
     const EncodedLayer layer = [] {
         LayerEncoder encoder(quantum, test::RandomLayer::state(0.2));

@@ -69,7 +69,8 @@ void check_refused_well(const std::string& text, std::size_t& refused) {
 }  // namespace
 
 TEST_CASE(
-    "printer 2, 6: any byte that is changed, lost or doubled is read or refused with its line") {
+    "printer 2, 6: any byte that is changed, lost or doubled is read or refused with its line" *
+    doctest::test_suite("long")) {
     REQUIRE(parse_printer(sample, "p.toml").ok());
     std::size_t refused = 0, tried = 0;
     for (std::size_t i = 0; i < sample.size(); ++i) {

@@ -328,7 +328,8 @@ TEST_CASE("printer: files that are missing, folders or far too large are refused
     CHECK(endless.error().message.find("1 MiB") != std::string::npos);
 }
 
-TEST_CASE("printer 6: cut and garbled files give a printer or an error, never a crash") {
+TEST_CASE("printer 6: cut and garbled files give a printer or an error, never a crash" *
+          doctest::test_suite("long")) {
     for (std::size_t length = 0; length < good.size(); ++length)
         (void)parse_printer(good.substr(0, length), "cut.toml");
     std::mt19937 random(11);

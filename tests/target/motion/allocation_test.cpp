@@ -56,7 +56,7 @@ TEST_CASE("planner 5, steps 6: nothing is allocated once the machine is set up")
     CHECK(!refused);
 }
 
-TEST_CASE("timed 5: nothing is allocated there either") {
+TEST_CASE("timed 5: nothing is allocated there either" * doctest::test_suite("long")) {
     std::mt19937 random(12);
     test::Job job;
     job.moves = test::random_moves(random, 3000, 0.5, job.origin, true);

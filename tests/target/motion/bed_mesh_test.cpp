@@ -86,7 +86,8 @@ TEST_CASE("mesh 3: no path changes the lift faster than the shape says") {
     CHECK(steepest > bed->shape().slope / 2);
 }
 
-TEST_CASE("mesh: every step of every machine is within half a microstep of the lifted path") {
+TEST_CASE("mesh: every step of every machine is within half a microstep of the lifted path" *
+          doctest::test_suite("long")) {
     Delta delta{{100, 100, 100, 415.3}, {}};
     for (std::size_t i = 0; i < Delta::tower_count; ++i) {
         const double angle_rad = (210.0 + 120.0 * static_cast<double>(i)) * std::numbers::pi / 180;

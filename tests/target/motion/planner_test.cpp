@@ -92,7 +92,8 @@ TEST_CASE("planner 1, 2: speeds are continuous and within every limit") {
         }
 }
 
-TEST_CASE("planner 1, 2: so they are with a small window, which costs time only") {
+TEST_CASE("planner 1, 2: so they are with a small window, which costs time only" *
+          doctest::test_suite("long")) {
     for (unsigned seed = 0; seed < 5; ++seed)
         for (const double size_mm : {0.01, 0.5, 20.0}) {
             Job job = random_job(seed, 2000, size_mm);
@@ -201,7 +202,8 @@ TEST_CASE("planner 3: a path and its reverse take the same time") {
 }
 
 TEST_CASE(
-    "planner 1, 2: so they are with a ratio of cruising, with S-curves and small windows too") {
+    "planner 1, 2: so they are with a ratio of cruising, with S-curves and small windows too" *
+    doctest::test_suite("long")) {
     for (unsigned seed = 0; seed < 4; ++seed)
         for (const double size_mm : {0.01, 0.5, 20.0})
             for (const double jerk_mm_s3 : {0.0, 1e5}) {
@@ -343,7 +345,8 @@ TEST_CASE("planner 3: a full planner gives at least a quarter and keeps the rest
     CHECK(planned.profile.end_speed_mm_s > 0);
 }
 
-TEST_CASE("planner 4: start times do not drift over a million moves") {
+TEST_CASE("planner 4: start times do not drift over a million moves" *
+          doctest::test_suite("long")) {
     Planner planner = *Planner::create(even_limits(100, 1000), 16);
     PlannedMove planned;
     // In whole nanoseconds and parts of them, so that the sum loses nothing either.

@@ -106,7 +106,8 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("shaper 2: what a mass on a spring keeps of a shaped move is what theory says") {
+TEST_CASE("shaper 2: what a mass on a spring keeps of a shaped move is what theory says" *
+          doctest::test_suite("long")) {
     for (const double damping : {0.0, 0.06})
         for (const double frequency_hz : {36.0, 40.0, 45.0}) {
             const Spring spring{frequency_hz, damping};

@@ -49,7 +49,8 @@ Move at_speed(const Path& path, double speed_mm_s) {
 
 }  // namespace
 
-TEST_CASE("steps 1, 2: lines and arcs of all sizes, against a bisection of the ideal motion") {
+TEST_CASE("steps 1, 2: lines and arcs of all sizes, against a bisection of the ideal motion" *
+          doctest::test_suite("long")) {
     Real worst_ns = 0;
     struct Size {
         double mm;
@@ -106,7 +107,7 @@ TEST_CASE("steps 1: the drawn circle stays within half a step of the round one")
     CHECK(worst_mm > cell_mm / 4);
 }
 
-TEST_CASE("steps 1, 2: arcs that are nearly straight") {
+TEST_CASE("steps 1, 2: arcs that are nearly straight" * doctest::test_suite("long")) {
     for (double sagitta_mm = 1e-14; sagitta_mm < 30; sagitta_mm *= 30)
         for (const double sign : {1.0, -1.0})
             for (const Point& to : {Point{100, 0, 0}, Point{0, -100, 0}, Point{61, 33, 0}}) {
@@ -136,7 +137,8 @@ TEST_CASE("steps 2: an arc without height steps as the line does") {
     }
 }
 
-TEST_CASE("steps 1, 3: a hundred thousand random moves and the way back end where they began") {
+TEST_CASE("steps 1, 3: a hundred thousand random moves and the way back end where they began" *
+          doctest::test_suite("long")) {
     std::mt19937 random(11);
     Job job;
     job.moves = test::random_moves(random, 100'000, 0.2, job.origin, true);
@@ -198,7 +200,8 @@ TEST_CASE("steps 2: the analytic times of a trapezoid") {
     }
 }
 
-TEST_CASE("steps 3: the extruder's parts of steps are not lost in a million moves") {
+TEST_CASE("steps 3: the extruder's parts of steps are not lost in a million moves" *
+          doctest::test_suite("long")) {
     Planner planner = *Planner::create(even_limits(300, 3000), 8);
     StepGenerator generator(Cartesian{{80, 80, 400, 415.3}}, Point{});
     std::array<StepEvent, 16> events;

@@ -112,7 +112,8 @@ TEST_CASE("timed 1, 2: with shapers, pressure advance and a limit of jerk") {
     MESSAGE("largest error of a step's time: ", static_cast<double>(worst_ns), " ns");
 }
 
-TEST_CASE("timed 3: three thousand random moves and the way back end where they began") {
+TEST_CASE("timed 3: three thousand random moves and the way back end where they began" *
+          doctest::test_suite("long")) {
     std::mt19937 random(11);
     Job job;
     job.moves = test::random_moves(random, 3'000, 0.2, job.origin, true);

@@ -139,7 +139,8 @@ void for_each_case(Check check) {
 
 }  // namespace
 
-TEST_CASE("guard 7: a converter of 10 bits at a steady temperature was taken for a frozen one") {
+TEST_CASE("guard 7: a converter of 10 bits at a steady temperature was taken for a frozen one" *
+          doctest::test_suite("long")) {
     for_each_case([](Rig& rig, const Case& heated) {
         for (const double fan_share : {0.0, 1.0, 0.3}) rig.advance(900, fan_share);
         REQUIRE_MESSAGE(!rig.control().trip(), rig.control().trip()->message);

@@ -64,8 +64,8 @@ TEST_CASE("control 1: without a target nothing is ever switched on") {
     CHECK(heat.control().reached(config::heater_tool));
 }
 
-TEST_CASE(
-    "control: no false alarm over ten hours of prints in PLA and ABS, with fans and changes") {
+TEST_CASE("control: no false alarm over ten hours of prints in PLA and ABS, with fans and changes" *
+          doctest::test_suite("long")) {
     for (const Targets& targets : {Targets{215, 60, 0}, Targets{240, 100, 45}}) {
         CAPTURE(targets.tool_c);
         SimulatedHeat heat(heated_printer(), {});
@@ -94,7 +94,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("control: no false alarm with sensors of every kind") {
+TEST_CASE("control: no false alarm with sensors of every kind" * doctest::test_suite("long")) {
     for (std::size_t kind = 0; kind < config::sensor_kinds.size(); ++kind) {
         CAPTURE(config::sensor_kinds[kind]);
         config::Printer printer = heated_printer();
