@@ -64,9 +64,11 @@ void PlanCopy::begin_phase(const PlanPiece& piece, std::int64_t at_ns) {
     const motion::Phase& phase = profile.phases[index];
     end_ns_ = ends_ns(index);
     origin_ns_ = move.start_ns;
-    origin_s_ = move.start_part_ns / ns_per_s + phase.time_s;
+    origin_part_ns_ = move.start_part_ns + phase.time_s * ns_per_s;
     const double from_mm = phase.distance_mm, length_mm = profile.length_mm;
-    c_ = {0, phase.speed_mm_s, phase.acceleration_mm_s2 / 2, phase.jerk_mm_s3 / 6};
+    constexpr double s_per_ns = 1 / ns_per_s;
+    c_ = {0, phase.speed_mm_s * s_per_ns, phase.acceleration_mm_s2 / 2 * s_per_ns * s_per_ns,
+          phase.jerk_mm_s3 / 6 * s_per_ns * s_per_ns * s_per_ns};
     const auto* arc = std::get_if<motion::Arc>(&move.path);
     turns_ = arc && channel_ <= motion::axis_y;
     double per_mm = weight_ * gain_mm(piece, channel_) / length_mm;

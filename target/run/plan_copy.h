@@ -15,7 +15,6 @@
 #include <cmath>
 #include <deque>
 
-#include "base/constants.h"
 #include "target/motion/planner.h"
 #include "target/motion/tap.h"
 
@@ -52,7 +51,7 @@ private:
     static constexpr double largest_turn_rad = 0.25;
 
     double cubic(std::int64_t at_ns) const {
-        const double t = static_cast<double>(at_ns - origin_ns_) / ns_per_s - origin_s_;
+        const double t = static_cast<double>(at_ns - origin_ns_) - origin_part_ns_;
         return c_[0] + t * (c_[1] + t * (c_[2] + t * c_[3]));
     }
     // By the series of sine and 1 - cosine; the first terms left out are 0.25^11 / 11! = 6e-15 of the radius and less.
@@ -73,8 +72,8 @@ private:
     std::int64_t offset_ns_;
     // Of the stretch; at first there is none.
     std::int64_t begin_ns_ = 0, end_ns_ = 0;
-    std::int64_t origin_ns_ = 0;  // and origin_s_ after it: where the time of the cubic begins
-    double origin_s_ = 0;
+    std::int64_t origin_ns_ = 0;  // from here on, and a part, the cubic counts nanoseconds
+    double origin_part_ns_ = 0;
     std::array<double, 4> c_{};  // mm, or of a turn rad from its begin
     bool turns_ = false;
     double place_mm_ = 0, ahead_mm_ = 0, inward_mm_ = 0;  // of a turn
