@@ -46,8 +46,8 @@ void PlanCopy::seek(const PlanPieces& pieces, std::int64_t at_ns) {
     begin_ns_ = at_ns;
     if (!is_before_all && at_ns < first_ns(piece.move, piece.move.profile.duration_s))
         return begin_phase(piece, at_ns);
-    // What follows the last piece is not known yet.
-    end_ns_ = after == pieces.end() ? at_ns + 1 : first_ns(after->move, 0);
+    // What follows the last piece is not known yet, and looked for each time.
+    end_ns_ = after == pieces.end() ? at_ns : first_ns(after->move, 0);
     turns_ = false;
     c_ = {weight_ * place_mm(piece, channel_, is_before_all ? 0 : 1), 0, 0, 0};
 }
