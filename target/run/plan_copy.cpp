@@ -3,6 +3,7 @@
 #include "target/run/plan_copy.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "base/constants.h"
 
@@ -90,6 +91,19 @@ void PlanCopy::begin_turn(const motion::Arc& arc, double share, double place_mm)
     place_mm_ = place_mm;
     ahead_mm_ = is_x ? -sine_mm : cosine_mm;
     inward_mm_ = is_x ? -cosine_mm : -sine_mm;
+}
+
+double PlanSum::sought_mm(const PlanPieces& pieces, std::int64_t plan_ns) {
+    double sum_mm = 0;
+    begin_ns_ = plan_ns;
+    end_ns_ = std::numeric_limits<std::int64_t>::max();
+    c_ = {};
+    for (PlanCopy& copy : copies_) {
+        sum_mm += copy.at_mm(pieces, plan_ns);
+        end_ns_ = std::min(end_ns_, copy.ends_ns());
+        if (end_ns_ > plan_ns) copy.add_to(c_, plan_ns);
+    }
+    return sum_mm;
 }
 
 }  // namespace lyr::run

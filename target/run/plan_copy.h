@@ -8,12 +8,13 @@
 // Contract
 //  1. at_mm() is exact to rounding for all times from the begin of the first piece to the end of the last; before
 //     it is where the first begins, after it where the last ends.
-//  2. Times may come in any order; ascending ones are quick.
+//  2. Times may come in any order; ascending ones are quick. A sum is that of its terms.
 
 #pragma once
 
 #include <cmath>
 #include <deque>
+#include <vector>
 
 #include "target/motion/planner.h"
 #include "target/motion/tap.h"
@@ -47,6 +48,17 @@ public:
         return turned_mm(value);
     }
 
+    // Until this plan time it is one cubic; of a turn, which is none, where it begins.
+    std::int64_t ends_ns() const { return (turns_ ? begin_ns_ : end_ns_) - offset_ns_; }
+    // Adds its cubic in the nanoseconds since a plan time.
+    void add_to(std::array<double, 4>& c, std::int64_t plan_ns) const {
+        const double d = static_cast<double>(plan_ns + offset_ns_ - origin_ns_) - origin_part_ns_;
+        c[0] += c_[0] + d * (c_[1] + d * (c_[2] + d * c_[3]));
+        c[1] += c_[1] + d * (2 * c_[2] + d * 3 * c_[3]);
+        c[2] += c_[2] + d * 3 * c_[3];
+        c[3] += c_[3];
+    }
+
 private:
     static constexpr double largest_turn_rad = 0.25;
 
@@ -77,6 +89,25 @@ private:
     std::array<double, 4> c_{};  // mm, or of a turn rad from its begin
     bool turns_ = false;
     double place_mm_ = 0, ahead_mm_ = 0, inward_mm_ = 0;  // of a turn
+};
+
+// All terms of one sum; where none of them turns they are one cubic, remembered in place of theirs.
+class PlanSum {
+public:
+    explicit PlanSum(std::vector<PlanCopy> copies) : copies_(std::move(copies)) {}
+
+    double at_mm(const PlanPieces& pieces, std::int64_t plan_ns) {
+        if (plan_ns < begin_ns_ || plan_ns >= end_ns_) return sought_mm(pieces, plan_ns);
+        const auto t = static_cast<double>(plan_ns - begin_ns_);
+        return c_[0] + t * (c_[1] + t * (c_[2] + t * c_[3]));
+    }
+
+private:
+    double sought_mm(const PlanPieces& pieces, std::int64_t plan_ns);
+
+    std::vector<PlanCopy> copies_;
+    std::int64_t begin_ns_ = 0, end_ns_ = 0;
+    std::array<double, 4> c_{};
 };
 
 }  // namespace lyr::run

@@ -26,13 +26,15 @@ ShapedPlan::ShapedPlan(const config::Printer& printer) : machine_(moves::kinemat
     const bool is_corexy = std::holds_alternative<motion::CoreXy>(machine_);
     const bool mixes_all = bed_ || std::holds_alternative<motion::Delta>(machine_);
     std::int64_t ahead_ns = 0, behind_ns = 0;
-    for (std::size_t i = 0; i < copies_.size(); ++i) {
+    for (std::size_t i = 0; i < motion::axis_count; ++i) {
         steps_per_mm_[i] = printer.axes[i].steps_per_mm;
-        copies_[i] = copies_of(i == motion::axis_e ? shaping.extruder : shaping.axes[i], i);
-        for (const PlanCopy& copy : copies_[i]) {
+        std::vector<PlanCopy> copies =
+            copies_of(i == motion::axis_e ? shaping.extruder : shaping.axes[i], i);
+        for (const PlanCopy& copy : copies) {
             ahead_ns = std::max(ahead_ns, copy.offset_ns());
             behind_ns = std::max(behind_ns, -copy.offset_ns());
         }
+        axes_.emplace_back(std::move(copies));
     }
     for (std::size_t motor = 0; motor < depends_.size(); ++motor) {
         origin_mm_[motor] = carried_mm(motor, origin);
@@ -58,12 +60,6 @@ void ShapedPlan::append(const motion::PlannedMove& move) {
 void ShapedPlan::forget_before(std::int64_t time_ns) {
     while (pieces_.size() > 1 && pieces_[1].move.start_ns < time_ns - reach_ns_)
         pieces_.pop_front();
-}
-
-double ShapedPlan::shaped_mm(std::size_t axis, std::int64_t plan_ns) {
-    double sum_mm = 0;
-    for (PlanCopy& copy : copies_[axis]) sum_mm += copy.at_mm(pieces_, plan_ns);
-    return sum_mm;
 }
 
 double ShapedPlan::carried_mm(std::size_t motor, const motion::Point& at) const {

@@ -29,12 +29,14 @@ public:
     std::int64_t reach_ns() const { return reach_ns_; }
 
 private:
-    double shaped_mm(std::size_t axis, std::int64_t plan_ns);
+    double shaped_mm(std::size_t axis, std::int64_t plan_ns) {
+        return axes_[axis].at_mm(pieces_, plan_ns);
+    }
     double carried_mm(std::size_t motor, const motion::Point& at) const;
 
     motion::Kinematics machine_;
     std::shared_ptr<const motion::BedMesh> bed_;
-    std::array<std::vector<PlanCopy>, motion::axis_count> copies_;  // whose sum each axis is
+    std::vector<PlanSum> axes_;
     AxisValues steps_per_mm_{};
     std::array<double, 3> origin_mm_{};             // of the motors
     std::array<std::array<bool, 3>, 3> depends_{};  // each motor, on which axes

@@ -128,3 +128,20 @@ TEST_CASE("plan copy 1: a plan that goes on is seen to, however it was asked bef
         if (known.size() > 3) known.pop_front();
     }
 }
+
+TEST_CASE("plan copy 1, 2: a sum is that of its terms") {
+    const PlanPieces pieces = planned(0);
+    PlanSum sum({{motion::axis_y, 0.3, -9'000'000},
+                 {motion::axis_y, 0.45, 0},
+                 {motion::axis_y, 0.25, 7'654'321}});
+    double worst_mm = 0;
+    for (const std::int64_t at_ns : times_of(pieces)) {
+        const auto term_mm = [&](double weight, std::int64_t offset_ns) {
+            return weight * searched_mm(pieces, motion::axis_y, at_ns + offset_ns);
+        };
+        const double searched =
+            term_mm(0.3, -9'000'000) + term_mm(0.45, 0) + term_mm(0.25, 7'654'321);
+        worst_mm = std::max(worst_mm, std::abs(sum.at_mm(pieces, at_ns) - searched));
+    }
+    CHECK(worst_mm < 1e-10);
+}
