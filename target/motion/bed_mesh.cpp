@@ -41,11 +41,12 @@ BedMesh::BedMesh(const Point& first, const Point& last, std::size_t columns,
 
 // By weights of the four corners; cell_at() is for those who need derivatives.
 double BedMesh::lift_mm(const Point& head) const {
+    if (fade_mm_ > 0 && head.z >= fade_mm_) return 0;
     const auto place = [](double at_mm, double first_mm, double pitch_mm, std::size_t lines) {
         const double at =
             std::clamp((at_mm - first_mm) / pitch_mm, 0.0, static_cast<double>(lines - 1));
-        const double low = std::min(std::floor(at), static_cast<double>(lines - 2));
-        return std::pair(static_cast<std::size_t>(low), at - low);
+        const std::size_t low = std::min(static_cast<std::size_t>(at), lines - 2);
+        return std::pair(low, at - static_cast<double>(low));
     };
     const auto [column, u] = place(head.x, first_.x, pitch_x_mm_, columns_);
     const auto [row, v] = place(head.y, first_.y, pitch_y_mm_, rows_);

@@ -21,6 +21,11 @@ Sample product(const Sample& a, const Sample& b) {
             a.acceleration * b.position + 2 * a.speed * b.speed + a.position * b.acceleration};
 }
 
+// Of mm and seconds; that squares might overflow, as hypot() takes care of, is no matter here.
+double size(double x, double y) {
+    return std::sqrt(x * x + y * y);
+}
+
 // Sizes of a function and of its first three derivatives.
 using Sizes = std::array<double, 4>;
 
@@ -222,12 +227,12 @@ Sample MotorFunction::lift_at(const std::array<Sample, 3>& at) const {
                cell.share_slope_per_mm * z.acceleration});
 }
 
-double MotorFunction::lift_jerk() const {
+double MotorFunction::lift_jerk(const std::array<Bounds, 3>& bounds) const {
     const MeshCell& cell = *cell_;
-    const auto sizes = [this](std::size_t axis, double from_mm) {
-        const Bounds bounds = smooth_[axis].bounds(duration_s_);
-        return Sizes{std::abs(smooth_[axis].at(0).position - from_mm) + bounds.speed * duration_s_,
-                     bounds.speed, bounds.acceleration, bounds.jerk()};
+    const auto sizes = [&](std::size_t axis, double from_mm) {
+        const Bounds& own = bounds[axis];
+        return Sizes{std::abs(smooth_[axis].at(0).position - from_mm) + own.speed * duration_s_,
+                     own.speed, own.acceleration, own.jerk()};
     };
     const Sizes u = sizes(axis_x, cell.x_mm), v = sizes(axis_y, cell.y_mm), z = sizes(axis_z, 0);
     const Sizes uv = product(u, v);
@@ -281,19 +286,20 @@ void MotorFunction::limit_jerk() {
         most_jerk_ = own.most_jerk;
         return;
     }
-    const double lift = bed_ ? lift_jerk() : 0, above = tower_ ? jerk_over_head() : 0;
-    most_jerk_ =
-        std::abs(steps_per_mm_) * (smooth_[axis_z].bounds(duration_s_).jerk() + lift + above);
+    std::array<Bounds, 3> bounds;
+    for (std::size_t i = 0; i < bounds.size(); ++i) bounds[i] = smooth_[i].bounds(duration_s_);
+    const double lift = bed_ ? lift_jerk(bounds) : 0, above = tower_ ? jerk_over_head(bounds) : 0;
+    most_jerk_ = std::abs(steps_per_mm_) * (bounds[axis_z].jerk() + lift + above);
     least_jerk_ = -most_jerk_;
 }
 
 // Of the root: g g' = q'/2, g g'' = q''/2 - g'^2, g g''' = q'''/2 - 3 g' g''.
-double MotorFunction::jerk_over_head() const {
-    const Bounds x = smooth_[axis_x].bounds(duration_s_), y = smooth_[axis_y].bounds(duration_s_);
-    const double v = std::hypot(x.speed, y.speed), a = std::hypot(x.acceleration, y.acceleration);
-    const double j = std::hypot(x.jerk(), y.jerk());
-    const double off_mm = std::hypot(smooth_[axis_x].at(0).position - tower_->x_mm,
-                                     smooth_[axis_y].at(0).position - tower_->y_mm) +
+double MotorFunction::jerk_over_head(const std::array<Bounds, 3>& bounds) const {
+    const Bounds &x = bounds[axis_x], &y = bounds[axis_y];
+    const double v = size(x.speed, y.speed), a = size(x.acceleration, y.acceleration);
+    const double j = size(x.jerk(), y.jerk());
+    const double off_mm = size(smooth_[axis_x].at(0).position - tower_->x_mm,
+                               smooth_[axis_y].at(0).position - tower_->y_mm) +
                           v * duration_s_;
     const double height_mm =
         std::sqrt(std::max(0.0, (tower_->arm_mm - off_mm) * (tower_->arm_mm + off_mm)));

@@ -82,9 +82,9 @@ private:
     Smooth& smooth_of(std::size_t channel) { return smooth_[in_space_ ? channel : 0]; }
     void stay_in_cell();
     Sample lift_at(const std::array<Sample, 3>& at) const;
-    double lift_jerk() const;
+    double lift_jerk(const std::array<Bounds, 3>& bounds) const;
     Sample height_over_head(const Sample& x, const Sample& y) const;
-    double jerk_over_head() const;
+    double jerk_over_head(const std::array<Bounds, 3>& bounds) const;
     void limit_jerk();
     void end_no_later_than(double time_s) {
         if (time_s < duration_s_) duration_s_ = time_s;

@@ -37,6 +37,12 @@ double sum(const std::array<double, 9>& series, double q) {
 
 void Smooth::add(const Turn& turn, double time, Sample& sample) {
     const TurnAngle& a = turn.angle;
+    if (time == 0) {
+        sample.speed += turn.ahead * a.rate;
+        sample.acceleration +=
+            turn.ahead * (2 * a.half_acceleration) + turn.inward * a.rate * a.rate;
+        return;
+    }
     const double angle = time * (a.rate + time * (a.half_acceleration + time * a.sixth_jerk));
     const double rate = a.rate + time * (2 * a.half_acceleration + time * 3 * a.sixth_jerk);
     const double acceleration = 2 * a.half_acceleration + 6 * a.sixth_jerk * time;
@@ -58,7 +64,7 @@ Bounds Smooth::bounds(double time) const {
                   2 * std::abs(c_[2]) + 6 * std::abs(c_[3]) * time, 6 * c_[3], 6 * c_[3]};
     for (std::size_t i = 0; i < turn_count_; ++i) {
         const Turn& turn = turns_[i];
-        const double size = std::hypot(turn.ahead, turn.inward);
+        const double size = std::sqrt(turn.ahead * turn.ahead + turn.inward * turn.inward);
         const double half = std::abs(turn.angle.half_acceleration);
         const double sixth = std::abs(turn.angle.sixth_jerk);
         const double end_rate = turn.angle.rate + time * (2 * turn.angle.half_acceleration +

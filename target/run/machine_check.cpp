@@ -169,7 +169,7 @@ double MachineCheck::carried_steps(std::size_t motor, std::int64_t position) con
     return std::clamp(at_steps_[motor], at - play_steps_[motor], at);
 }
 
-double MachineCheck::planned(std::size_t motor, std::int64_t time_ns) const {
+double MachineCheck::planned(std::size_t motor, std::int64_t time_ns) {
     return plan_.empty() ? infinity : plan_.motor_steps(motor, time_ns);
 }
 

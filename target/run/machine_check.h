@@ -40,7 +40,7 @@ private:
     void look_until(std::int64_t time_ns, const StepPositions& positions);
     // Where the play lets the axis be when the motor is at a position.
     double carried_steps(std::size_t motor, std::int64_t position) const;
-    double planned(std::size_t motor, std::int64_t time_ns) const;
+    double planned(std::size_t motor, std::int64_t time_ns);
     void measure(std::size_t motor, double planned_steps, std::int64_t position);
 
     motion::Kinematics machine_;

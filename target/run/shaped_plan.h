@@ -1,6 +1,6 @@
 // The planned motion of a machine's motors evaluated forwards: from a time over the distance to a point, over
 // the taps of the shaping, through the kinematics. For checking steps that were found the other way round;
-// it shares no code with the generators but the taps and the speed profile's.
+// it shares no code with the generators but the taps, the paths and the speed profile's numbers.
 //
 // Contract
 //  1. motor_steps() is exact to rounding for times from the first move that is kept to the end of the last,
@@ -8,10 +8,9 @@
 
 #pragma once
 
-#include <deque>
-
 #include "target/moves/machine.h"
 #include "target/run/path_check.h"
+#include "target/run/plan_copy.h"
 
 namespace lyr::run {
 
@@ -25,29 +24,24 @@ public:
 
     bool empty() const { return pieces_.empty(); }
     // At a time of the steps, which lags behind the plan's by lead_ns().
-    double motor_steps(std::size_t motor, std::int64_t time_ns) const;
+    double motor_steps(std::size_t motor, std::int64_t time_ns);
     std::int64_t lead_ns() const { return lead_ns_; }
     std::int64_t reach_ns() const { return reach_ns_; }
 
 private:
-    struct Piece {
-        motion::PlannedMove move;
-        double fed_mm = 0, pressed_mm = 0;  // at its begin
-        bool presses = false;
-    };
-
-    double channel_mm(std::size_t channel, std::int64_t plan_ns) const;
-    double shaped_mm(std::size_t axis, std::int64_t plan_ns) const;
-    const Piece& piece_at(std::int64_t plan_ns) const;
-    std::array<double, 3> carried_mm(motion::Point at) const;
+    double shaped_mm(std::size_t axis, std::int64_t plan_ns) {
+        return axes_[axis].at_mm(pieces_, plan_ns);
+    }
+    double carried_mm(std::size_t motor, const motion::Point& at) const;
 
     motion::Kinematics machine_;
-    motion::Shaping shaping_;
+    std::shared_ptr<const motion::BedMesh> bed_;
+    std::vector<PlanSum> axes_;
     AxisValues steps_per_mm_{};
     std::array<double, 3> origin_mm_{};             // of the motors
     std::array<std::array<bool, 3>, 3> depends_{};  // each motor, on which axes
     std::int64_t lead_ns_ = 0, reach_ns_ = 0;
-    std::deque<Piece> pieces_;
+    PlanPieces pieces_;
     double fed_mm_ = 0, fed_error_mm_ = 0, pressed_mm_ = 0;
 };
 

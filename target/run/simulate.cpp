@@ -91,10 +91,10 @@ public:
 private:
     Status pump(Executor& executor, ReplaceFile* trace);
     // Waits, rests and what the head does meanwhile are no part of the plan.
-    void decode(gpio::LineWrite write) {
+    void decode(const gpio::LineWrite& write) {
         if (executor_ && executor_->on_trip()) return;
-        write.time_ns -= executor_ ? executor_->behind_ns() : 0;
-        decoder_.write(write);
+        const std::int64_t behind_ns = executor_ ? executor_->behind_ns() : 0;
+        decoder_.write({write.time_ns - behind_ns, write.changed, write.levels});
     }
     bool is_lived() const { return lives(job_); }
     void live(double time_s);

@@ -1,0 +1,109 @@
+// Stretches are made of whole nanoseconds: all those that lie in a phase.
+
+#include "target/run/plan_copy.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "base/constants.h"
+
+namespace lyr::run {
+namespace {
+
+// The first whole nanosecond that is not before a time since the begin of the move.
+std::int64_t first_ns(const motion::PlannedMove& move, double since_s) {
+    return move.start_ns +
+           static_cast<std::int64_t>(std::ceil(move.start_part_ns + since_s * ns_per_s));
+}
+
+double coordinate(const motion::Point& at, std::size_t axis) {
+    return axis == motion::axis_x ? at.x : axis == motion::axis_y ? at.y : at.z;
+}
+
+// What a channel gains over the whole move.
+double gain_mm(const PlanPiece& piece, std::size_t channel) {
+    const motion::Path& path = piece.move.path;
+    if (channel == motion::pressed_channel && !piece.presses) return 0;
+    if (channel >= motion::axis_e) return motion::advance_of(path);
+    return coordinate(motion::end_of(path), channel) - coordinate(motion::start_of(path), channel);
+}
+
+double place_mm(const PlanPiece& piece, std::size_t channel, double share) {
+    if (channel < motion::axis_e)
+        return coordinate(motion::point_at_share(piece.move.path, share), channel);
+    const double from_mm = channel == motion::axis_e ? piece.fed_mm : piece.pressed_mm;
+    return from_mm + gain_mm(piece, channel) * share;
+}
+
+}  // namespace
+
+void PlanCopy::seek(const PlanPieces& pieces, std::int64_t at_ns) {
+    const auto after = std::upper_bound(pieces.begin(), pieces.end(), at_ns,
+                                        [](std::int64_t time_ns, const PlanPiece& piece) {
+                                            return time_ns < first_ns(piece.move, 0);
+                                        });
+    const bool is_before_all = after == pieces.begin();
+    const PlanPiece& piece = is_before_all ? *after : *std::prev(after);
+    begin_ns_ = at_ns;
+    if (!is_before_all && at_ns < first_ns(piece.move, piece.move.profile.duration_s))
+        return begin_phase(piece, at_ns);
+    // What follows the last piece is not known yet, and looked for each time.
+    end_ns_ = after == pieces.end() ? at_ns : first_ns(after->move, 0);
+    turns_ = false;
+    c_ = {weight_ * place_mm(piece, channel_, is_before_all ? 0 : 1), 0, 0, 0};
+}
+
+void PlanCopy::begin_phase(const PlanPiece& piece, std::int64_t at_ns) {
+    const motion::PlannedMove& move = piece.move;
+    const motion::Profile& profile = move.profile;
+    const auto ends_ns = [&](std::size_t phase) {
+        const bool is_last = phase + 1 == profile.phases.size();
+        return first_ns(move, is_last ? profile.duration_s : profile.phases[phase + 1].time_s);
+    };
+    std::size_t index = 0;
+    while (ends_ns(index) <= at_ns) ++index;
+    const motion::Phase& phase = profile.phases[index];
+    end_ns_ = ends_ns(index);
+    origin_ns_ = move.start_ns;
+    origin_part_ns_ = move.start_part_ns + phase.time_s * ns_per_s;
+    const double from_mm = phase.distance_mm, length_mm = profile.length_mm;
+    constexpr double s_per_ns = 1 / ns_per_s;
+    c_ = {0, phase.speed_mm_s * s_per_ns, phase.acceleration_mm_s2 / 2 * s_per_ns * s_per_ns,
+          phase.jerk_mm_s3 / 6 * s_per_ns * s_per_ns * s_per_ns};
+    const auto* arc = std::get_if<motion::Arc>(&move.path);
+    turns_ = arc && channel_ <= motion::axis_y;
+    double per_mm = weight_ * gain_mm(piece, channel_) / length_mm;
+    if (turns_) {
+        const double way_mm = cubic(at_ns), share = (from_mm + way_mm) / length_mm;
+        begin_turn(*arc, share, weight_ * place_mm(piece, channel_, share));
+        c_[0] = -way_mm;
+        per_mm = arc->sweep_rad / length_mm;
+    }
+    for (double& c : c_) c *= per_mm;
+    if (!turns_) c_[0] = weight_ * place_mm(piece, channel_, from_mm / length_mm);
+}
+
+void PlanCopy::begin_turn(const motion::Arc& arc, double share, double place_mm) {
+    const double angle_rad = arc.start_angle_rad + share * arc.sweep_rad;
+    const double sine_mm = weight_ * arc.radius_mm * std::sin(angle_rad);
+    const double cosine_mm = weight_ * arc.radius_mm * std::cos(angle_rad);
+    const bool is_x = channel_ == motion::axis_x;
+    place_mm_ = place_mm;
+    ahead_mm_ = is_x ? -sine_mm : cosine_mm;
+    inward_mm_ = is_x ? -cosine_mm : -sine_mm;
+}
+
+double PlanSum::sought_mm(const PlanPieces& pieces, std::int64_t plan_ns) {
+    double sum_mm = 0;
+    begin_ns_ = plan_ns;
+    end_ns_ = std::numeric_limits<std::int64_t>::max();
+    c_ = {};
+    for (PlanCopy& copy : copies_) {
+        sum_mm += copy.at_mm(pieces, plan_ns);
+        end_ns_ = std::min(end_ns_, copy.ends_ns());
+        if (end_ns_ > plan_ns) copy.add_to(c_, plan_ns);
+    }
+    return sum_mm;
+}
+
+}  // namespace lyr::run
