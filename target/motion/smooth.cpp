@@ -27,10 +27,12 @@ constexpr std::array<double, 9> versine_series{1.0 / 2.,
                                                -1.0 / 20922789888000.,
                                                1.0 / 6402373705728000.};
 
-double sum(const std::array<double, 9>& series, double q) {
-    double value = series.back();
-    for (std::size_t i = series.size() - 1; i-- > 0;) value = series[i] + q * value;
-    return value;
+// By Estrin's scheme: its terms do not wait for each other, as Horner's do.
+double sum(const std::array<double, 9>& c, double q) {
+    const double q2 = q * q, q4 = q2 * q2;
+    const double low = (c[0] + c[1] * q) + (c[2] + c[3] * q) * q2;
+    const double high = (c[4] + c[5] * q) + (c[6] + c[7] * q) * q2;
+    return low + (high + c[8] * q4) * q4;
 }
 
 }  // namespace

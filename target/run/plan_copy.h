@@ -68,10 +68,11 @@ private:
     }
     // By the series of sine and 1 - cosine; the first terms left out are 0.25^11 / 11! = 6e-15 of the radius and less.
     double turned_mm(double a) const {
-        const double q = a * a;
-        const double sine = a * (1 - q * (1. / 6 - q * (1. / 120 - q * (1. / 5040 - q / 362880))));
-        const double versine =
-            q * (1. / 2 - q * (1. / 24 - q * (1. / 720 - q * (1. / 40320 - q / 3628800))));
+        const double q = a * a, q2 = q * q;
+        const double sine =
+            a * ((1 - q * (1. / 6)) + q2 * ((1. / 120 - q * (1. / 5040)) + q2 * (1. / 362880)));
+        const double versine = q * ((1. / 2 - q * (1. / 24)) +
+                                    q2 * ((1. / 720 - q * (1. / 40320)) + q2 * (1. / 3628800)));
         return place_mm_ + ahead_mm_ * sine + inward_mm_ * versine;
     }
     // The stretch from here on.

@@ -1,5 +1,5 @@
 // The chain is that of a print; at its end the mock's observer decodes the lines and hands each step to
-// the two checks.
+// the two checks, which have a thread of their own.
 
 #include "target/run/simulate.h"
 
@@ -9,13 +9,13 @@
 #include "base/constants.h"
 #include "base/text.h"
 #include "target/gpio/tracing_chip.h"
+#include "target/run/checks_beside.h"
 #include "target/run/demands.h"
 #include "target/run/event_stream.h"
 #include "target/run/executor.h"
 #include "target/run/heating.h"
 #include "target/run/life.h"
 #include "target/run/simulated_clock.h"
-#include "target/run/step_checks.h"
 
 namespace lyr::run {
 namespace {
@@ -122,7 +122,7 @@ private:
     const Executor* executor_ = nullptr;
     EventStream stream_;
     FilePath file_;
-    StepChecks checks_;
+    ChecksBeside checks_;
     PulseDecoder decoder_;
     LineLayout layout_;
     gpio::MockChip mock_;
@@ -208,8 +208,8 @@ SimulationReport Simulation::report() const {
     for (std::size_t i = 0; i < report.pulses.size(); ++i) report.pulses[i] = decoder_.figures(i);
     report.positions = decoder_.positions();
     report.writes = decoder_.writes();
-    report.path = checks_.off_file();
-    report.planned_steps = checks_.off_plan();
+    report.path = checks_.checks().off_file();
+    report.planned_steps = checks_.checks().off_plan();
     report.waited_s = waited_s_;
     report.paused_s = life_.paused_s();
     report.trip_steps = trip_steps_;
