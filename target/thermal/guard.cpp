@@ -3,6 +3,7 @@
 #include "target/thermal/guard.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/text.h"
 
@@ -13,6 +14,9 @@ using config::GuardLimits;
 
 // Between the readings that the rate is taken from.
 constexpr double rate_window_s = 0.5;
+
+// Of gain_time_s: a sensor that lags by more could hardly show the gain in time.
+constexpr double longest_lag = 0.5;
 
 // What every message ends with.
 constexpr const char* consequence =
@@ -139,21 +143,30 @@ std::optional<Trip> check_off(const std::string& heater, const GuardLimits& limi
                               GuardState& state, const Sample& sample) {
     const double t = sample.measured.temperature_c;
     if (sample.power > 0) {
+        state.has_heated = true;
         state.off_since_s.reset();
         state.lowest_c.reset();
         return std::nullopt;
     }
-    if (!state.off_since_s) state.off_since_s = sample.time_s;
-    if (sample.time_s - *state.off_since_s < settle_s) return std::nullopt;
-    const double passed_s = sample.time_s - state.last_time_s;
-    const double follow_c = passed_s * limits.stray_c / limits.stray_time_s;
+    if (!state.off_since_s) {
+        state.off_since_s = sample.time_s;
+        state.off_from_c = t;
+    }
+    const double off_s = sample.time_s - *state.off_since_s;
+    if (off_s < settle_s) return std::nullopt;
+    if (!state.lowest_c)
+        state.lagging_c_s = state.has_heated ? std::max(0.0, (t - state.off_from_c) / off_s) : 0;
+    const double neighbour_c_s = limits.stray_c / limits.stray_time_s;
+    const double lag_c_s =
+        state.lagging_c_s * std::exp((settle_s - off_s) / (longest_lag * limits.gain_time_s));
+    const double follow_c = (sample.time_s - state.last_time_s) * std::max(neighbour_c_s, lag_c_s);
     state.lowest_c = std::min(t, state.lowest_c.value_or(t) + follow_c);
     if (t <= *state.lowest_c + limits.stray_c) return std::nullopt;
     return trip(
         GuardKind::stuck_on, heater,
         formatted("%.1f °C and rising, though it has been switched off for %.0f s: its switch is "
                   "stuck on; cut the power now, and look at the transistor or relay",
-                  t, sample.time_s - *state.off_since_s));
+                  t, off_s));
 }
 
 std::optional<Trip> check_frozen(const std::string& heater, const GuardLimits& limits,

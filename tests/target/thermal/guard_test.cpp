@@ -153,6 +153,34 @@ TEST_CASE("guard 6: rising while off, but neither the lag nor a warm neighbour")
         on, [](double t) { return 25 + 0.5 * t; }, 60));
 }
 
+TEST_CASE("guard 6: what a slow sensor still has to tell was taken for a stuck switch") {
+    // A bed of 400 W: the plate gains 0.55 °C/s, and its sensor lags by 30 s.
+    const double gain_c_s = 0.55, lag_s = 30, off_s = 100;
+    config::GuardLimits limits = config::default_heater(config::heater_bed).guard;
+    const auto watched = [&](bool sticks) -> std::optional<Fired> {
+        GuardState state;
+        double plate_c = 21, sensor_c = 21;
+        for (int tick = 0; tick * tick_s < off_s + 200; ++tick) {
+            const double time_s = tick * tick_s, power = time_s < off_s ? 1 : 0;
+            const Sample sample{
+                time_s, 2'000.0 + tick % 2, {sensor_c}, power > 0 ? 120.0 : 0.0, power};
+            if (const auto trip = watch("bed", limits, state, sample))
+                return Fired{trip->kind, time_s};
+            if (power > 0 || sticks) plate_c += gain_c_s * tick_s;
+            sensor_c += (plate_c - sensor_c) * tick_s / lag_s;
+        }
+        return std::nullopt;
+    };
+    CHECK_FALSE(watched(false));
+    const auto stuck = watched(true);
+    REQUIRE(stuck);
+    CHECK(stuck->kind == GuardKind::stuck_on);
+    CHECK(stuck->time_s < off_s + settle_s + 25);
+    // An owner who promises a faster sensor has it found sooner.
+    limits.gain_time_s = 20;
+    CHECK(watched(true)->time_s < stuck->time_s - 5);
+}
+
 TEST_CASE("guard 7: a figure that never changes while there is a target") {
     Watched watched;
     watched.noisy = false;
