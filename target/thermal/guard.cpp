@@ -81,17 +81,28 @@ std::optional<Trip> check_rate(const std::string& heater, const GuardLimits& lim
                   change_c, time_s, r[0]));
 }
 
-void begin_phase(const GuardLimits& limits, GuardState& state, const Sample& sample) {
+void begin_heating(const GuardLimits& limits, GuardState& state, const Sample& sample) {
     const double t = sample.measured.temperature_c;
-    state.target_c = sample.target_c;
-    state.below_since_s.reset();
+    const bool goes_on =
+        state.broken_off_s && sample.time_s - *state.broken_off_s < limits.gain_time_s;
     state.highest_c.reset();
-    state.phase = Phase::off;
-    if (!(sample.target_c > 0)) return;
-    state.phase = t < sample.target_c - limits.stray_c ? Phase::heating : Phase::holding;
     state.heating_since_s = sample.time_s;
-    state.goal_c = t + limits.gain_c;
-    state.goal_time_s = sample.time_s + limits.gain_time_s;
+    state.goal_c = goes_on ? std::min(state.goal_c, t + limits.gain_c) : t + limits.gain_c;
+    state.goal_time_s = sample.time_s + (goes_on ? state.goal_left_s : limits.gain_time_s);
+}
+
+void take_target(const GuardLimits& limits, GuardState& state, const Sample& sample) {
+    const bool heated = state.phase == Phase::heating;
+    const bool has_target = sample.target_c > 0;
+    const bool heats =
+        has_target && sample.measured.temperature_c < sample.target_c - limits.stray_c;
+    state.target_c = sample.target_c;
+    state.phase = heats ? Phase::heating : has_target ? Phase::holding : Phase::off;
+    state.below_since_s.reset();
+    if (heats && !heated) begin_heating(limits, state, sample);
+    if (heats || !heated) return;
+    state.broken_off_s = sample.time_s;
+    state.goal_left_s = state.goal_time_s - sample.time_s;
 }
 
 std::optional<Trip> check_heating(const std::string& heater, const GuardLimits& limits,
@@ -99,6 +110,7 @@ std::optional<Trip> check_heating(const std::string& heater, const GuardLimits& 
     const double t = sample.measured.temperature_c;
     if (t >= state.target_c - limits.stray_c) {
         state.phase = Phase::holding;
+        state.broken_off_s.reset();
         return std::nullopt;
     }
     if (sample.time_s > state.heating_since_s + settle_s) {
@@ -195,7 +207,7 @@ std::optional<Trip> watch(const std::string& heater, const GuardLimits& limits, 
     }
     state.bad = 0;
     std::optional<Trip> found = check_rate(heater, limits, state, sample);
-    if (sample.target_c != state.target_c) begin_phase(limits, state, sample);
+    if (sample.target_c != state.target_c) take_target(limits, state, sample);
     if (!found && state.phase == Phase::heating)
         found = check_heating(heater, limits, state, sample);
     if (!found && state.phase == Phase::holding)

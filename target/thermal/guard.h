@@ -5,7 +5,8 @@
 //  1. sensor: open, shorted, unreadable, below the range or above it (over-temperature), bad_samples times in
 //     a row; a good one in between starts the count anew.
 //  2. rate: between readings half a second apart, each the middle one of three, more than rate_c_s.
-//  3. heating too slow: while further than stray_c below the target, less than gain_c in gain_time_s.
+//  3. heating too slow: while further than stray_c below the target, less than gain_c in gain_time_s. Another target
+//     that is as far away sets that time back by nothing, and one that is not only stops it for less than gain_time_s.
 //  4. falling: while heating so, stray_c below the highest reading since heating began, the first settle_s
 //     left out, in which the sensor still tells of the time before.
 //  5. stray: once the target was reached, more than stray_c below it for longer than stray_time_s.
@@ -75,6 +76,8 @@ struct GuardState {
     std::size_t reading_count = 0;
     double heating_since_s = 0;
     double goal_c = 0, goal_time_s = 0;  // to have gained by then
+    std::optional<double> broken_off_s;  // when another target ended the heating,
+    double goal_left_s = 0;              // and the time that it had left
     std::optional<double> highest_c;     // while heating
     std::optional<double> below_since_s;
     bool has_heated = false;

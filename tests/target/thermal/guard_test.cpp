@@ -104,6 +104,43 @@ TEST_CASE("guard 3: heating must gain 2 °C in 20 s, all the way") {
         off, [](double) { return 25.0; }, 100));
 }
 
+TEST_CASE("guard 3: a target that changed often gave a dead heater its time anew each time") {
+    // A heater that is dead from the begin, and one that died at its target and cools; targets that change every 8 s.
+    const config::GuardLimits limits = config::default_heater(config::heater_tool).guard;
+    for (const double other_c : {209.0, 211.0, 150.0, 30.0, 0.0})
+        for (const bool is_cold : {true, false}) {
+            CAPTURE(other_c);
+            CAPTURE(is_cold);
+            GuardState state;
+            std::optional<Trip> trip;
+            double time_s = 0;
+            for (int tick = 0; !trip && time_s < 900; time_s = ++tick * tick_s) {
+                const double target_c = std::fmod(time_s, 16) < 8 ? 210 : other_c;
+                const double t = is_cold ? 22 : 21 + 189 * std::exp(-time_s / 120);
+                const Sample sample{time_s, 2'000.0 + tick % 2, {t}, target_c, 1};
+                trip = watch("tool", limits, state, sample);
+            }
+            REQUIRE(trip);
+            CHECK(time_s < 60);
+        }
+}
+
+TEST_CASE("guard 3: targets that change often do not make a heater that heats too slow") {
+    for (const double other_c : {211.0, 150.0, 0.0}) {
+        CAPTURE(other_c);
+        const config::GuardLimits limits = config::default_heater(config::heater_tool).guard;
+        GuardState state;
+        double t = 22;
+        for (int tick = 0; tick * tick_s < 900; ++tick) {
+            const double time_s = tick * tick_s;
+            const double target_c = std::fmod(time_s, 16) < 8 ? 210 : other_c;
+            const Sample sample{time_s, 2'000.0 + tick % 2, {t}, target_c, 1};
+            CHECK_FALSE(watch("tool", limits, state, sample));
+            t += (t < target_c ? 1.5 : -0.5) * tick_s;
+        }
+    }
+}
+
 TEST_CASE("guard 4: falling while heating, but for the first seconds") {
     const Watched watched;
     const auto falls = fired(
