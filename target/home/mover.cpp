@@ -97,7 +97,7 @@ motion::StepCounts difference(motion::StepCounts counts, const motion::StepCount
 
 Mover::Mover(const config::Printer& printer, gpio::GpioChip& chip, gpio::Clock& clock,
              gpio::InputLines* inputs, const run::StopSignals* signals)
-    : chip_(chip), clock_(clock), tally_(chip, clock), signals_(signals) {
+    : chip_(chip), clock_(clock), tally_(chip, clock), signals_(signals), cpu_(printer.timing.cpu) {
     if (inputs) watch_.emplace(*inputs, printer);
 }
 
@@ -152,7 +152,7 @@ Result<bool> Mover::execute_beside(run::Executor& executor, std::span<const run:
     std::atomic<bool> finished{false};
     std::thread edges([&] {
         Diagnostics warnings;
-        run::take_precedence(warnings);
+        run::take_precedence(cpu_, warnings);
         executed = executor.execute(events);
         finished.store(true);
     });

@@ -60,6 +60,7 @@ private:
     std::optional<ContactWatch> watch_;
     const run::StopSignals* signals_;
     bool asked_to_stop_ = false;
+    std::optional<unsigned> cpu_;
 };
 
 }  // namespace lyr::home
