@@ -165,6 +165,25 @@ TEST_CASE("limits 4: over a steep bed no way asks more of z than it can") {
     CHECK(strongest > 5);
 }
 
+TEST_CASE("limits 4: on a tilted bed z turns with an arc, and keeps to its acceleration") {
+    Limits limits = test::even_limits(1'000, 1e6);
+    limits.bed_jump_mm_s = 1e3;
+    const double slope = 0.02;
+    for (const double z_mm_s2 : {10.0, 100.0}) {
+        limits.axes[axis_z] = {1e3, z_mm_s2};
+        const BedMesh bed({0, 0}, {100, 100}, 2, {0, slope * 100, 0, slope * 100}, 0);
+        limits.bed = bed.shape();
+        for (const double radius_mm : {1.0, 5.0, 40.0}) {
+            const Path circle = circle_about({50 + radius_mm, 50, 0}, 50, 50, true, 0, 0);
+            const MoveLimits own = limits_of({circle, 1'000, 0, 0}, limits);
+            const double turning_mm_s2 = slope * own.speed_mm_s * own.speed_mm_s / radius_mm;
+            const double gaining_mm_s2 = slope * own.acceleration_mm_s2;
+            CHECK(std::hypot(turning_mm_s2, gaining_mm_s2) <= z_mm_s2 * (1 + 1e-9));
+            CHECK(turning_mm_s2 > z_mm_s2 / 4);
+        }
+    }
+}
+
 TEST_CASE("limits 4: the speed of z jumped where a bed had faded") {
     Limits limits = test::even_limits(200, 3'000);
     limits.axes[axis_z] = {40, 500};

@@ -54,6 +54,25 @@ TEST_CASE("control: heaters reach their targets, overshoot little and hold them"
     }
 }
 
+TEST_CASE("control: a heater is off while its sensor gives bad figures, before any guard fires") {
+    for (const char* fault : {"open", "short", "unreadable"}) {
+        CAPTURE(fault);
+        const std::string script = "20 " + std::string(fault) + " tool\n20.25 mend tool\n";
+        config::Printer printer = heated_printer();
+        SimulatedHeat heat(printer, faults_of(script, printer));
+        heat.control().set_target(config::heater_tool, 210);
+        heat.advance_to(19.9);
+        REQUIRE(heat.any_heater_on());
+        int off = 0;
+        heat.observe([&](double) { off += !heat.any_heater_on(); });
+        heat.advance_to(20.2);
+        CHECK(off == 3);
+        heat.advance_to(25);
+        CHECK(off == 3);
+        CHECK_FALSE(heat.control().trip());
+    }
+}
+
 TEST_CASE("control 1: without a target nothing is ever switched on") {
     SimulatedHeat heat(heated_printer(), {});
     bool on = false;

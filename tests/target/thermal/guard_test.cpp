@@ -169,6 +169,26 @@ TEST_CASE("guard 5: straying for longer than 40 s, and not for less") {
         watched, [](double t) { return std::fmod(t, 40) < 30 && t > 40 ? 194.0 : 200.0; }, 400));
 }
 
+TEST_CASE("guard 5: how long one has strayed is forgotten with the target") {
+    const config::GuardLimits limits = config::default_heater(config::heater_tool).guard;
+    GuardState state;
+    const auto holds = [&](double from_s, double to_s, double target_c, double t) {
+        for (int tick = static_cast<int>(from_s / tick_s); tick * tick_s < to_s; ++tick) {
+            const Sample sample{tick * tick_s, 2'000.0 + tick % 2, {t}, target_c, 1};
+            const auto trip = watch("tool", limits, state, sample);
+            if (trip) return false;
+        }
+        return true;
+    };
+    CHECK(holds(0, 10, 200, 200));
+    CHECK(holds(10, 45, 200, 195));
+    // Near enough to a higher one in a single sample, and less so afterwards.
+    CHECK(holds(45, 50, 210, 204));
+    CHECK(holds(50, 50.1, 210, 206.1));
+    CHECK(holds(50.1, 90, 210, 205.9));
+    CHECK_FALSE(holds(90, 92, 210, 205.9));
+}
+
 TEST_CASE("guard 6: rising while off, but neither the lag nor a warm neighbour") {
     Watched off;
     off.target_c = 0;

@@ -34,6 +34,15 @@ TEST_CASE("pid 2: hours of full power are no debt once the target is passed") {
     CHECK(pid.update(200, 190) >= 0.5);
 }
 
+TEST_CASE("pid 2: an overshoot does not cost the power that holds the target") {
+    PidController pid({0.1, 0.01, 0}, 1);
+    double power = 0;
+    for (int i = 0; i < 20'000; ++i) power = pid.update(200, 199 + power * 2);
+    REQUIRE(power == doctest::Approx(0.5).epsilon(0.01));
+    for (int i = 0; i < 100; ++i) CHECK(pid.update(200, 220) == 0);
+    CHECK(pid.update(200, 200) == doctest::Approx(0.5).epsilon(0.01));
+}
+
 TEST_CASE("pid 2: the integral finds the power that holds the target") {
     PidController pid({0.02, 0.01, 0}, 1);
     double power = 0;
