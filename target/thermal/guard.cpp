@@ -98,7 +98,6 @@ void take_target(const GuardLimits& limits, GuardState& state, const Sample& sam
         has_target && sample.measured.temperature_c < sample.target_c - limits.stray_c;
     state.target_c = sample.target_c;
     state.phase = heats ? Phase::heating : has_target ? Phase::holding : Phase::off;
-    state.below_since_s.reset();
     if (heats && !heated) begin_heating(limits, state, sample);
     if (heats || !heated) return;
     state.broken_off_s = sample.time_s;

@@ -296,7 +296,7 @@ namespace {
 
 // Two motors at the same rate, half a period apart, whose pulses last longer than that: one is always out.
 struct Overlapping {
-    static constexpr config::PulseTiming pulse{20'000, 5'000, 1'000, 500, 5'000'000};
+    static constexpr config::PulseTiming pulse{25'000, 5'000, 1'000, 500, 5'000'000};
     static constexpr std::int64_t period_ns = 40'000;
     static constexpr std::size_t steps = 20'000;  // of each
     std::vector<LineEvent> events;
@@ -317,7 +317,7 @@ struct Overlapping {
 
 TEST_CASE("executor 5: a stop among pulses that overlap waited for a gap that never came") {
     const Overlapping motors;
-    const ExecutorTiming limits{20'000, 5'000'000, 60'000'000};
+    const ExecutorTiming limits{25'000, 5'000'000, 60'000'000};
     for (const int requests : {1, 2}) {
         CAPTURE(requests);
         StopRequests stop{0};
@@ -360,7 +360,7 @@ TEST_CASE("executor 9: rests among pulses that overlap lose and double no step")
     });
     PulseDecoder decoder({});
     gpio::MockChip chip(8, clock, [&](const gpio::LineWrite& write) { decoder.write(write); });
-    Executor executor(chip, clock, {20'000, 5'000'000, 60'000'000}, stop, nullptr, &pace);
+    Executor executor(chip, clock, {25'000, 5'000'000, 60'000'000}, stop, nullptr, &pace);
     std::span<const LineEvent> left(motors.events);
     const std::vector<Step> trip_steps{{1'000'000, 0, true}, {2'000'000, 0, false}};
     int rests = 0;

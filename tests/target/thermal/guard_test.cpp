@@ -141,6 +141,18 @@ TEST_CASE("guard 3: targets that change often do not make a heater that heats to
     }
 }
 
+TEST_CASE("guard 3: what was left of a time is gone once the target was reached") {
+    const config::GuardLimits limits = config::default_heater(config::heater_tool).guard;
+    GuardState state;
+    // A target that is too far for 19 s, near at once, a little too far, and far again.
+    for (int tick = 0; tick < 380; ++tick) {
+        const double time_s = tick * tick_s, t = time_s < 19.6 ? 100 : 101;
+        const double target_c = time_s < 19 ? 210 : time_s < 19.4 ? 102 : time_s < 20 ? 104.5 : 150;
+        const Sample sample{time_s, 2'000.0 + tick % 2, {t}, target_c, 1};
+        CHECK_FALSE(watch("tool", limits, state, sample));
+    }
+}
+
 TEST_CASE("guard 4: falling while heating, but for the first seconds") {
     const Watched watched;
     const auto falls = fired(
