@@ -38,6 +38,7 @@ public:
         clock();
         governor();
         timing();
+        processor();
         watchdog();
         return std::move(findings_);
     }
@@ -72,6 +73,7 @@ private:
     void clock();
     void governor();
     void timing();
+    void processor();
     void watchdog();
 
     const Printer& printer_;
@@ -214,6 +216,39 @@ void Check::timing() {
              "the printer's file");
 }
 
+// Whether a list of the kernel's, such as 0-2,5, has a number.
+bool lists(std::string_view list, unsigned number) {
+    const char* const end = list.data() + list.size();
+    for (const char* at = list.data(); at < end; ++at) {
+        unsigned first = 0;
+        std::from_chars_result read = std::from_chars(at, end, first);
+        unsigned last = first;
+        if (read.ec == std::errc() && read.ptr < end && *read.ptr == '-')
+            read = std::from_chars(read.ptr + 1, end, last);
+        if (read.ec != std::errc()) return false;
+        if (number >= first && number <= last) return true;
+        at = read.ptr;
+        if (at == end || *at != ',') return false;
+    }
+    return false;
+}
+
+void Check::processor() {
+    if (!printer_.timing.cpu) return;
+    const unsigned cpu = *printer_.timing.cpu;
+    const std::string folder = "/sys/devices/system/cpu/";
+    const std::string online = word(folder + "online").value_or("");
+    if (!lists(online, cpu))
+        fail("timing.cpu", formatted("%u is no processor of this board, which has ", cpu) + online);
+    else if (!lists(word(folder + "isolated").value_or(""), cpu))
+        warn("timing.cpu",
+             formatted("%u is there, but other programs run there, too: the kernel's parameter "
+                       "isolcpus=%u keeps it free",
+                       cpu, cpu));
+    else
+        good("timing.cpu", formatted("%u is there, and kept free", cpu));
+}
+
 void Check::watchdog() {
     const std::string& device = printer_.watchdog.device;
     const auto may = [this](const std::string& path, int what) {
@@ -235,7 +270,7 @@ void Check::watchdog() {
 
 Diagnostics try_privileges() {
     Diagnostics refused;
-    std::thread([&refused] { run::take_precedence(refused); }).join();
+    std::thread([&refused] { run::take_precedence({}, refused); }).join();
     run::lock_memory(refused);
     return refused;
 }

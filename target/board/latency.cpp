@@ -154,6 +154,7 @@ Result<LatencyReport> measure_latency(const LatencyJob& job, gpio::Clock& clock,
 }
 
 Result<LatencyReport> measure_latency(const LatencyJob& job) {
+    if (const Status has = run::check_cpu(job.printer.timing.cpu); !has) return has.error();
     std::unique_ptr<gpio::GpioChip> chip;
     if (job.lines) {
         const Result<std::vector<gpio::LineRequest>> requests = run::line_requests(job.printer);
@@ -168,7 +169,7 @@ Result<LatencyReport> measure_latency(const LatencyJob& job) {
     const Load load;
     std::thread([&] {
         run::lock_memory(warnings);
-        run::take_precedence(warnings);
+        run::take_precedence(job.printer.timing.cpu, warnings);
         report = measure_latency(job, clock, chip.get());
     }).join();
     if (report) report->warnings = std::move(warnings);

@@ -72,6 +72,18 @@ void append_axis(std::vector<Key>& keys, std::size_t i) {
     append_output(keys, axis + "enable", line(&Axis::enable));
 }
 
+Key cpu_key() {
+    return {"timing.cpu", false, false, [](const toml::node& node, Draft& draft) -> Complaint {
+                // The kernel's mask of processors has so many.
+                constexpr std::int64_t most = 1'024;
+                const auto* cpu = node.as_integer();
+                if (!cpu || cpu->get() < 0 || cpu->get() >= most)
+                    return expected("a whole number from 0 to 1023", node);
+                draft.printer.timing.cpu = static_cast<unsigned>(cpu->get());
+                return std::nullopt;
+            }};
+}
+
 }  // namespace
 
 std::vector<Key> printer_keys() {
@@ -103,6 +115,7 @@ std::vector<Key> printer_keys() {
     keys.push_back(number("timing.write_us", {0, 1e4}, [](Draft& draft, double value) {
         draft.printer.timing.write_ns = std::llround(value * ns_per_us);
     }));
+    keys.push_back(cpu_key());
     for (std::size_t i = 0; i < axis_count; ++i) append_axis(keys, i);
     append_heat_keys(keys);
     append_homing_keys(keys);

@@ -28,6 +28,8 @@ public:
     std::optional<InputEdge> settled(std::int64_t now_ns);
     // As told last.
     bool active() const { return told_; }
+    // The last edge is that long ago.
+    bool is_quiet(std::int64_t now_ns) const { return now_ns - changed_ns_ >= settle_ns_; }
 
 private:
     std::int64_t settle_ns_;

@@ -77,7 +77,7 @@ Status ContactWatch::collect(bool keep) {
     }
 }
 
-Status ContactWatch::begin(Contacts watched, run::StopRequests& stop) {
+Status ContactWatch::begin(Contacts watched, run::StopRequests& stop, std::int64_t now_ns) {
     watched_ = watched;
     triggers_ = {};
     stop_ = &stop;
@@ -85,8 +85,18 @@ Status ContactWatch::begin(Contacts watched, run::StopRequests& stop) {
     const Result<Contacts> now = touched();
     if (!now) return now.error();
     lines_.clear();
-    for (const std::size_t contact : contact_of_) lines_.emplace_back(settle_ns_, (*now)[contact]);
+    for (std::size_t line = 0; line < contact_of_.size(); ++line) {
+        const bool touches = (*now)[contact_of_[line]], counts = watched[contact_of_[line]];
+        lines_.emplace_back(settle_ns_, touches && !counts);
+        lines_.back().edge({now_ns, static_cast<std::uint8_t>(line), touches});
+    }
     return Done{};
+}
+
+bool ContactWatch::is_quiet(std::int64_t now_ns) const {
+    for (std::size_t line = 0; line < lines_.size(); ++line)
+        if (watched_[contact_of_[line]] && !lines_[line].is_quiet(now_ns)) return false;
+    return true;
 }
 
 void ContactWatch::poll(std::int64_t now_ns) {

@@ -3,7 +3,8 @@
 // Contract
 //  1. Contacts are numbered as in config (x, y, z, probe); a printer's file may lack any of them.
 //  2. After begin(), the first of the watched contacts that closes and settles adds a request to stop; triggers() has it
-//     with the time of its first touch, and the others that have closed by the time they are asked for.
+//     with the time of its first touch, and the others that have closed by the time they are asked for. One that is
+//     closed when begin() is called closes then: nothing is driven on into it.
 //  3. What fails in the inputs adds a request to stop, and status() is why.
 
 #pragma once
@@ -33,9 +34,11 @@ public:
     // Which are touched now.
     Result<Contacts> touched();
     // Forgets what was, and watches.
-    Status begin(Contacts watched, run::StopRequests& stop);
+    Status begin(Contacts watched, run::StopRequests& stop, std::int64_t now_ns);
     // Edges up to now.
     void poll(std::int64_t now_ns);
+    // None of those watched has had an edge lately, that may settle yet.
+    bool is_quiet(std::int64_t now_ns) const;
 
     using Times = std::array<std::optional<std::int64_t>, config::contact_count>;
     const Times& triggers() const { return triggers_; }

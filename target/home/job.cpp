@@ -37,6 +37,7 @@ Result<std::unique_ptr<gpio::InputLines>> open_inputs(const config::Printer& pri
 }
 
 Status on_board(const config::Printer& printer, Diagnostics& warnings, const Work& work) {
+    if (const Status has = run::check_cpu(printer.timing.cpu); !has) return has.error();
     const Result<std::vector<gpio::LineRequest>> requests = run::line_requests(printer);
     if (!requests) return requests.error();
     const Result<std::unique_ptr<gpio::InputLines>> inputs = open_inputs(printer);

@@ -16,6 +16,8 @@ namespace {
 
 // How long an edge of a contact may wait until it is looked at: the machine runs on meanwhile.
 constexpr std::int64_t look_ns = 1'000'000;
+// For how many times of settling a contact that goes on bouncing is waited for.
+constexpr std::int64_t most_settlings = 20;
 
 // After every wait something is looked at.
 class PolledClock final : public gpio::Clock {
@@ -95,7 +97,7 @@ motion::StepCounts difference(motion::StepCounts counts, const motion::StepCount
 
 Mover::Mover(const config::Printer& printer, gpio::GpioChip& chip, gpio::Clock& clock,
              gpio::InputLines* inputs, const run::StopSignals* signals)
-    : chip_(chip), clock_(clock), tally_(chip, clock), signals_(signals) {
+    : chip_(chip), clock_(clock), tally_(chip, clock), signals_(signals), cpu_(printer.timing.cpu) {
     if (inputs) watch_.emplace(*inputs, printer);
 }
 
@@ -109,7 +111,8 @@ Result<Moved> Mover::run(const config::Printer& machine, std::span<const motion:
     if (!events) return events.error();
     run::StopRequests stop{0};
     if (watch_)
-        if (Status begun = watch_->begin(watched, stop); !begun) return begun.error();
+        if (Status begun = watch_->begin(watched, stop, clock_.now_ns()); !begun)
+            return begun.error();
     const motion::StepCounts before = tally_.counts();
     run::ExecutorTiming timing = run::executor_timing(machine);
     timing.braking_ns = braking_ns(machine, moves);
@@ -128,9 +131,18 @@ Result<Moved> Mover::run(const config::Printer& machine, std::span<const motion:
 Result<bool> Mover::execute(run::Executor& executor, std::span<const run::LineEvent> events,
                             run::StopRequests&) {
     Result<bool> executed = executor.execute(events);
-    if (executed && watch_)
-        watch_->poll(clock_.wait_until_ns(clock_.now_ns() + watch_->settle_ns()));
+    const std::int64_t since_ns = clock_.now_ns();
+    if (!executed || !watch_) return executed;
+    do watch_->poll(clock_.wait_until_ns(clock_.now_ns() + watch_->settle_ns()));
+    while (may_settle(since_ns));
     return executed;
+}
+
+bool Mover::may_settle(std::int64_t since_ns) const {
+    if (!watch_) return false;
+    const std::int64_t now_ns = clock_.now_ns(), settle_ns = watch_->settle_ns();
+    if (now_ns - since_ns < settle_ns) return true;
+    return !watch_->is_quiet(now_ns) && now_ns - since_ns < most_settlings * settle_ns;
 }
 
 // The real-time thread writes; this one watches, and is asked to stop.
@@ -140,7 +152,7 @@ Result<bool> Mover::execute_beside(run::Executor& executor, std::span<const run:
     std::atomic<bool> finished{false};
     std::thread edges([&] {
         Diagnostics warnings;
-        run::take_precedence(warnings);
+        run::take_precedence(cpu_, warnings);
         executed = executor.execute(events);
         finished.store(true);
     });
@@ -155,9 +167,9 @@ Result<bool> Mover::execute_beside(run::Executor& executor, std::span<const run:
     };
     while (!finished.load()) look();
     edges.join();
-    const std::int64_t until_ns = clock_.now_ns() + (watch_ ? watch_->settle_ns() : 0);
+    const std::int64_t since_ns = clock_.now_ns();
     do look();
-    while (clock_.now_ns() < until_ns);
+    while (may_settle(since_ns));
     return executed;
 }
 

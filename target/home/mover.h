@@ -3,7 +3,8 @@
 //
 // Contract
 //  1. run() makes the moves from rest to rest. A watched contact that closes brings the machine to rest on its path;
-//     the result says which closed, and where the motors were when each was first touched.
+//     the result says which closed, and where the motors were when each was first touched; those that closed as it came
+//     to rest are waited for until they have settled.
 //  2. Counts of a result are in microsteps since the begin of that run.
 //  3. SIGINT and the like bring the machine to rest and end with status stopped. After a run the motors are on, and all
 //     lines but enable inactive, as the executor of a print expects them.
@@ -47,6 +48,8 @@ public:
 private:
     Result<bool> execute(run::Executor& executor, std::span<const run::LineEvent> events,
                          run::StopRequests& stop);
+    // A watched contact may still settle, and not for ever.
+    bool may_settle(std::int64_t since_ns) const;
     Result<bool> execute_beside(run::Executor& executor, std::span<const run::LineEvent> events,
                                 run::StopRequests& stop);
     Result<Moved> outcome(const motion::StepCounts& before) const;
@@ -57,6 +60,7 @@ private:
     std::optional<ContactWatch> watch_;
     const run::StopSignals* signals_;
     bool asked_to_stop_ = false;
+    std::optional<unsigned> cpu_;
 };
 
 }  // namespace lyr::home

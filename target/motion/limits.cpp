@@ -107,19 +107,32 @@ MoveLimits tightest(MoveLimits own, const std::array<double, axis_count>& shares
     return own;
 }
 
-// `level` and `rise` are the shares of x and y together and of z in the motion.
-MoveLimits over_bed(MoveLimits own, double level, double rise, double turn_per_mm,
-                    const Limits& limits) {
+struct BedWay {
+    double level, rise;  // shares of x and y together and of z in the motion
+    double turn_per_mm;
+    double from_z_mm, to_z_mm;
+};
+
+// The lift begins to fade at z = 0 and has faded where 1 / fade_per_mm is.
+bool meets_fade(const BedWay& way, const BedShape& bed) {
+    const auto [low_mm, high_mm] = std::minmax(way.from_z_mm, way.to_z_mm);
+    const auto meets = [&](double z_mm) { return low_mm <= z_mm && z_mm <= high_mm; };
+    return bed.fade_per_mm > 0 && (meets(0) || meets(1 / bed.fade_per_mm));
+}
+
+MoveLimits over_bed(MoveLimits own, const BedWay& way, const Limits& limits) {
     const BedShape& bed = limits.bed;
-    if (!(bed.slope > 0)) return own;
+    if (!(bed.slope > 0) && !(bed.fade_slope > 0)) return own;
+    const auto& [level, rise, turn_per_mm, from_z_mm, to_z_mm] = way;
     const AxisLimits& z = limits.axes[axis_z];
     const double share = rise * (1 + bed.fade_slope) + bed.slope * level;
     const double turning = level * level * (bed.twist_per_mm + bed.slope * turn_per_mm) +
                            2 * bed.slope * level * rise * bed.fade_per_mm;
     const double each_mm_s2 = turning > 0 ? z.acceleration_mm_s2 / 2 : z.acceleration_mm_s2;
+    const double jump = bed.kink * level + (meets_fade(way, bed) ? bed.fade_slope * rise : 0);
     own.speed_mm_s =
         std::min({own.speed_mm_s, ratio(z.speed_mm_s, share), std::sqrt(ratio(each_mm_s2, turning)),
-                  ratio(limits.bed_jump_mm_s, bed.kink * level)});
+                  ratio(limits.bed_jump_mm_s, jump)});
     own.acceleration_mm_s2 = std::min(own.acceleration_mm_s2, ratio(each_mm_s2, share));
     return own;
 }
@@ -129,8 +142,10 @@ MoveLimits along(const Line& line, const Move& move, double length_mm, const Lim
                                                 std::abs(line.to.y - line.from.y) / length_mm,
                                                 std::abs(line.to.z - line.from.z) / length_mm,
                                                 std::abs(line.advance_mm) / length_mm};
-    return over_bed(tightest({move.speed_mm_s, requested_mm_s2(move)}, shares, limits),
-                    std::hypot(shares[axis_x], shares[axis_y]), shares[axis_z], 0, limits);
+    return over_bed(
+        tightest({move.speed_mm_s, requested_mm_s2(move)}, shares, limits),
+        {std::hypot(shares[axis_x], shares[axis_y]), shares[axis_z], 0, line.from.z, line.to.z},
+        limits);
 }
 
 MoveLimits along(const Arc& arc, const Move& move, double length_mm, const Limits& limits) {
@@ -140,7 +155,7 @@ MoveLimits along(const Arc& arc, const Move& move, double length_mm, const Limit
 
     const Plane plane{limits.axes[axis_x], limits.axes[axis_y], folded_sweep(arc)};
     const double level = arc.radius_mm * std::abs(arc.sweep_rad) / length_mm;
-    own = over_bed(own, level, shares[axis_z], 1 / arc.radius_mm, limits);
+    own = over_bed(own, {level, shares[axis_z], 1 / arc.radius_mm, arc.from.z, arc.to.z}, limits);
     const double most = std::min(plane.tangential_mm_s2(0), level * own.acceleration_mm_s2);
     const double kept = std::min(most, tangential_share * plane.weaker_mm_s2());
     const double centripetal = std::min(plane.centripetal_mm_s2(kept), requested_mm_s2(move));

@@ -13,7 +13,8 @@
 //     moves' own.
 //  4. Over a crooked bed z moves too: by the slope for each mm of the path, faster and slower with the bed's twist and
 //     with the arc's turn. That and z's own motion keep the limits of z, with half of its acceleration for changes of
-//     speed and half for the rest. At the edges of cells its speed jumps by no more than bed_jump_mm_s.
+//     speed and half for the rest. At the edges of cells, and where the bed begins and ends to fade, its
+//     speed jumps by no more than bed_jump_mm_s.
 //  5. The extruder's speed does not jump by more than extruder_jump_mm_s at a corner. Between a
 //     move of the extruder alone and any other the machine stops.
 

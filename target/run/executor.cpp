@@ -67,17 +67,20 @@ void Executor::go_on() {
 
 Result<bool> Executor::run(std::span<const LineEvent> events) {
     taken_ = 0;
-    for (const LineEvent& event : events) {
+    for (LineEvent event : events) {
         if (!started_ && !on_trip_ && target_pace() == 0) return false;
         if (rebased_) start(event);
+        const gpio::LineMask ended = on_trip_ ? 0 : ended_;
+        const gpio::LineMask falls = ended & ~event.levels;
+        event.levels &= ~ended;
         const std::int64_t planned_gap_ns = event.time_ns - last_event_ns_;
         const std::optional<std::int64_t> gap_ns = paced_gap_ns(planned_gap_ns);
-        if (!gap_ns) return false;
+        if (!gap_ns) return rest();
         const std::int64_t due_ns = last_begin_ns_ + *gap_ns;
         const std::int64_t allowed_ns =
             std::max(due_ns, last_end_ns_ + std::min(*gap_ns, timing_.edge_gap_ns));
         const std::optional<std::int64_t> begin_ns = wait_until_ns(allowed_ns);
-        if (!begin_ns) return false;
+        if (!begin_ns) return rest();
         const std::int64_t late_ns = *begin_ns - due_ns;
         worst_late_ns_ = std::max(worst_late_ns_, late_ns);
         // Only steps move the head: the end of a pulse or a turn that comes late must not slow it down.
@@ -85,11 +88,23 @@ Result<bool> Executor::run(std::span<const LineEvent> events) {
         if (is_step) stretched_ns_ += late_ns;
         if (late_ns > timing_.late_limit_ns) return too_late(late_ns, timing_.late_limit_ns);
         last_begin_ns_ = is_step ? *begin_ns : due_ns;
-        if (((event.levels ^ levels_) & all_mark_bits) && !pass_mark(event)) return false;
-        if (Status written = write(event, last_begin_ns_); !written) return written.error();
+        if (((event.levels ^ levels_) & all_mark_bits) && !pass_mark(event)) return rest();
+        if (Status written = write(event, last_begin_ns_, falls); !written) return written.error();
         ++taken_;
     }
     return true;
+}
+
+Result<bool> Executor::rest() {
+    const gpio::LineMask out = levels_ & all_step_bits;
+    if (!out) return false;
+    clock_.wait_until_ns(last_end_ns_ + timing_.edge_gap_ns);
+    if (Status written = chip_.write(out, levels_ & ~out); !written) return written.error();
+    last_end_ns_ = clock_.now_ns();
+    levels_ &= ~out;
+    if (!on_trip_) ended_ |= out;
+    ++writes_;
+    return false;
 }
 
 void Executor::start(const LineEvent& event) {
@@ -112,9 +127,7 @@ std::optional<std::int64_t> Executor::paced_gap_ns(std::int64_t gap_ns) {
     const bool stands = gap_ns > standing_ns;
     if (target == 0) {
         const bool at_once = stop_requests_.load(std::memory_order_relaxed) > 1;
-        const bool pulse_out = (levels_ & all_step_bits) != 0;
-        if (at_once || pace_ <= rest_pace || stands)
-            return pulse_out ? std::optional(gap_ns) : std::nullopt;
+        if (at_once || pace_ <= rest_pace || stands) return std::nullopt;
     } else if (stands) {
         pace_ = target;
         return gap_ns;
@@ -153,18 +166,19 @@ bool Executor::pass_mark(const LineEvent& event) {
     return !at_gate_;
 }
 
-Status Executor::write(const LineEvent& event, std::int64_t begin_ns) {
+Status Executor::write(const LineEvent& event, std::int64_t begin_ns, gpio::LineMask falls) {
     const gpio::LineMask toggled = levels_ ^ event.levels;
     const gpio::LineMask lines = toggled & ~all_mark_bits;
-    const bool only_marks = toggled != 0 && lines == 0;
+    const bool is_written = lines != 0 || (toggled == 0 && falls == 0);
     if (!on_trip_) behind_ns_ = begin_ns - event.time_ns;
-    Status written = only_marks ? Done{} : chip_.write(lines, event.levels);
+    Status written = is_written ? chip_.write(lines, event.levels) : Done{};
     last_begin_ns_ = begin_ns;
     last_end_ns_ = clock_.now_ns();
     last_event_ns_ = event.time_ns;
     levels_ = event.levels;
+    ended_ &= ~falls;
     count(toggled, event.levels);
-    if (!only_marks) ++writes_;
+    if (is_written) ++writes_;
     return written;
 }
 

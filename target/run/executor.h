@@ -12,15 +12,17 @@
 //  4. An event that comes later than late_limit_ns ends the print with a diagnostic (status machine).
 //  5. After a first request to stop, time is stretched more and more, so that the head comes to rest on
 //     its path within about braking_ns and no axis loses steps; then execute() returns false. A second
-//     request stops after the pulse that is out. A long wait is left within wait_slice_ns.
-//     Before the first event a request ends it without a write. taken() events have been written then.
+//     request stops at once. Pulses that are out then, as those of several axes may be all the time, are ended
+//     together, edge_gap_ns after the last write; their steps are made and counted. A long wait is left within
+//     wait_slice_ns. Before the first event a request ends it without a write. taken() events have been written then.
 //  6. A failed write ends the print with its diagnostic.
 //  7. At a mark the count of those reached is stored; at a gate no further event is written until as many orders are
 //     done. The time spent there counts as neither time of events nor lateness. Without `marks` both are passed by.
 //  8. Nothing is allocated, locked or logged, and no call is made but wait and write.
 //  9. Time runs at the pace that is wanted, a share of the planned one, and follows a new one as evenly as in
 //     braking. A wanted pace of 0 brings the head to rest as 5 does; after go_on() the events from taken() on follow, and
-//     the head gains speed as it lost it. No event is left out or doubled by that.
+//     the head gains speed as it lost it. No event is left out or doubled by that; the end of a pulse that was ended
+//     at rest changes no line any more.
 // 10. A trip is a train of events of its own, at rest on both ends, written between two events of the path at its own
 //     full pace. A request to stop brings it to rest, too; a wanted pace does not.
 // 11. positions() counts the rising edges of the path, trip_steps() those of trips.
@@ -105,7 +107,10 @@ private:
     std::optional<std::int64_t> paced_gap_ns(std::int64_t gap_ns);
     // The time after the wait, or none if it was left on request.
     std::optional<std::int64_t> wait_until_ns(std::int64_t time_ns);
-    Status write(const LineEvent& event, std::int64_t begin_ns);
+    // `falls`: the step lines that would end their pulse, if they had not at rest.
+    Status write(const LineEvent& event, std::int64_t begin_ns, gpio::LineMask falls);
+    // Ends the pulses that are out. Always false, or what failed.
+    Result<bool> rest();
     void count(gpio::LineMask toggled, gpio::LineMask levels);
     // False: left on request.
     bool pass_mark(const LineEvent& event);
@@ -121,8 +126,11 @@ private:
     bool on_trip_ = false;
     std::size_t taken_ = 0;
     gpio::LineMask levels_ = 0;
+    gpio::LineMask ended_ =
+        0;  // step lines that are low at rest, and high in the path's events until their pulse ends
     std::int64_t last_event_ns_ = 0;
-    std::int64_t last_begin_ns_ = 0;  // of the last write, on the clock; of one without a step, when it was due
+    std::int64_t last_begin_ns_ =
+        0;  // of the last write, on the clock; of one without a step, when it was due
     std::int64_t last_end_ns_ = 0;
     double pace_ = 1;  // of time: 1 full speed, 0 rest
     std::int64_t stretched_ns_ = 0;

@@ -9,6 +9,7 @@
 #include "target/gpio/gpiod_chip.h"
 #include "target/run/line_keeper.h"
 #include "target/run/line_layout.h"
+#include "target/thermal/slow_sensor.h"
 
 namespace lyr::run {
 namespace {
@@ -71,6 +72,7 @@ Result<thermal::HeaterPort> open_port(const config::Printer& printer, std::size_
     if (heater.sensor.file.empty()) return missing(printer, section + ".sensor.file");
     if (!heater.output && heater.pwm.empty()) return missing(printer, section + ".output or .pwm");
     auto sensor = thermal::open_file_sensor(heater.sensor.file);
+    if (sensor) sensor = thermal::unhurried(std::move(*sensor));
     if (!sensor) {
         Diagnostic error = sensor.error();
         error.message = section + ": " + error.message;

@@ -228,6 +228,7 @@ bool can_resume(const PrintJob& job) {
 }
 
 Result<Prepared> prepare(const PrintJob& job) {
+    if (const Status has = check_cpu(job.printer.timing.cpu); !has) return has.error();
     Result<Inspection> inspection = inspect(job.file, job.printer);
     if (!inspection) return inspection.error();
     Prepared prepared{std::move(*inspection), {}};
@@ -323,7 +324,7 @@ struct Running {
 // The real-time thread.
 void drive(Running& running, gpio::GpioChip& chip, Diagnostics& warnings) {
     Shared& shared = running.shared;
-    take_precedence(warnings);
+    take_precedence(running.printer.timing.cpu, warnings);
     while (!shared.filled.load() && !shared.stop_requests.load())
         std::this_thread::sleep_for(executor_nap);
     running.outcome.executed = drain(running.executor, running.traced, shared);
@@ -380,6 +381,7 @@ Result<PrintReport> run(const PrintJob& job, const Prepared& prepared, gpio::Gpi
     if (!status) return status.error();
     if (life.journal_error()) report.warnings.push_back(*life.journal_error());
     report_on(running.executor, running.traced, report);
+    report.cpu = running.printer.timing.cpu;
     report.paused_s = life.paused_s();
     return report;
 }
@@ -451,6 +453,7 @@ std::string text_of(const PrintReport& report) {
         static_cast<unsigned long long>(report.writes),
         static_cast<double>(report.worst_late_ns) / ns_per_us);
     std::string text = line;
+    if (report.cpu) text += formatted("  all of them on processor %u\n", *report.cpu);
     if (report.waited_s > 0) {
         std::snprintf(line, sizeof line, "  waited %.1f s for temperatures\n", report.waited_s);
         text += line;

@@ -11,6 +11,7 @@
 //     print() returns.
 //  4. The first SIGINT, SIGTERM or SIGHUP brings the head to rest on its path, a second one stops at
 //     once; both end with status stopped.
+//     A processor that timing.cpu names and this board lacks is an error before anything is held.
 //  5. The pulses are those of the simulation, in the same order, with at least the same gaps.
 //  6. Commands of `control` are served as life.h says, by this thread; it tells there what the print is, to its end.
 //  7. With a journal (journal.h) the print can be resumed after it was cut off, also by a signal or a guard; one that is done
@@ -54,6 +55,7 @@ struct PrintReport {
     double planned_s = 0;
     double stretched_s = 0;  // how much longer it took
     std::int64_t worst_late_ns = 0;
+    std::optional<unsigned> cpu;  // that wrote all lines
     std::uint64_t writes = 0;
     double waited_s = 0;  // for temperatures
     double paused_s = 0;

@@ -8,6 +8,9 @@
 
 #include <cerrno>
 #include <cstring>
+#include <fstream>
+#include <string>
+#include <thread>
 
 namespace lyr::run {
 namespace {
@@ -31,6 +34,15 @@ Diagnostic refused(const std::string& what, int error, const std::string& remedy
             {}};
 }
 
+// What the kernel answers.
+int stay_on(unsigned cpu) {
+    if (cpu >= CPU_SETSIZE) return EINVAL;
+    cpu_set_t only;
+    CPU_ZERO(&only);
+    CPU_SET(cpu, &only);
+    return ::pthread_setaffinity_np(::pthread_self(), sizeof only, &only);
+}
+
 }  // namespace
 
 void keep_stacks_small() {
@@ -49,12 +61,31 @@ void lock_memory(Diagnostics& warnings) {
             refused("locking memory", errno, "grant CAP_IPC_LOCK or raise `ulimit -l`"));
 }
 
-void take_precedence(Diagnostics& warnings) {
+void take_precedence(std::optional<unsigned> cpu, Diagnostics& warnings) {
+    if (const int error = cpu ? stay_on(*cpu) : 0)
+        warnings.push_back(
+            refused("processor " + std::to_string(*cpu), error, "look at timing.cpu"));
     sched_param parameters{};
     parameters.sched_priority = precedence;
     if (const int error = ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameters))
         warnings.push_back(
             refused("real-time scheduling", error, "grant CAP_SYS_NICE or raise `ulimit -r`"));
+}
+
+Status check_cpu(std::optional<unsigned> cpu) {
+    if (!cpu) return Done{};
+    int error = 0;
+    std::thread([&] { error = stay_on(*cpu); }).join();
+    if (error == 0) return Done{};
+    std::string online;
+    std::getline(std::ifstream("/sys/devices/system/cpu/online") >> std::ws, online);
+    return Diagnostic{Severity::error,
+                      ExitStatus::machine,
+                      "timing.cpu = " + std::to_string(*cpu) +
+                          ": the board has no such processor, or does not let this program run "
+                          "there; it has " +
+                          (online.empty() ? "others" : online),
+                      {}};
 }
 
 }  // namespace lyr::run

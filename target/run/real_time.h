@@ -1,9 +1,12 @@
 // What a thread asks of the kernel before it may be trusted with edges of microseconds.
 //
 // Contract
-//  1. Nothing here fails a print: what the kernel refuses comes back as a warning that says what to do.
+//  1. What the kernel refuses comes back as a warning that says what to do, and fails no print.
+//  2. check_cpu() is an error (status machine) that names timing.cpu if this program's threads may not run there.
 
 #pragma once
+
+#include <optional>
 
 #include "base/diagnostic.h"
 
@@ -16,7 +19,9 @@ void keep_stacks_small();
 // milliseconds.
 void lock_memory(Diagnostics& warnings);
 
-// Puts the calling thread before all ordinary ones (SCHED_FIFO).
-void take_precedence(Diagnostics& warnings);
+// Puts the calling thread before all ordinary ones (SCHED_FIFO), and on that processor alone; none: on any.
+void take_precedence(std::optional<unsigned> cpu, Diagnostics& warnings);
+
+Status check_cpu(std::optional<unsigned> cpu);
 
 }  // namespace lyr::run

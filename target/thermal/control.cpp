@@ -40,10 +40,12 @@ void HeatControl::tune(std::size_t number, const RelayTune& relay) {
 }
 
 void HeatControl::tick(double time_s) {
+    const double passed_s = std::max(0.0, time_s - ticked_s_.value_or(time_s - tick_s));
+    ticked_s_ = time_s;
     for (Channel& channel : channels_) {
         if (trip_) break;
-        sample(channel, time_s);
-        if (!trip_) control(channel, time_s);
+        sample(channel, time_s, passed_s);
+        if (!trip_) control(channel, time_s, passed_s);
     }
     // After a trip, too: fans go on with their pulses.
     for (std::size_t i = 0; i < channels_.size(); ++i) shares_[i] = channels_[i].status.power;
@@ -59,7 +61,7 @@ void HeatControl::stop(Trip trip) {
     for (Channel& channel : channels_) channel.status.target_c = channel.status.power = 0;
 }
 
-void HeatControl::sample(Channel& channel, double time_s) {
+void HeatControl::sample(Channel& channel, double time_s, double passed_s) {
     const config::Heater& settings = channel.port.settings;
     HeaterStatus& status = channel.status;
     const Result<double> raw = channel.port.sensor->read();
@@ -80,7 +82,7 @@ void HeatControl::sample(Channel& channel, double time_s) {
     status.highest_c = std::max(status.highest_c, status.temperature_c);
     check_extrusion(channel);
     const bool near = std::abs(status.temperature_c - status.target_c) <= reached_c;
-    channel.near_s = near ? channel.near_s + tick_s : 0;
+    channel.near_s = near ? channel.near_s + passed_s : 0;
 }
 
 void HeatControl::check_extrusion(const Channel& channel) {
@@ -102,16 +104,17 @@ void HeatControl::check_extrusion(const Channel& channel) {
     stop({GuardKind::falling, text});
 }
 
-void HeatControl::control(Channel& channel, double time_s) {
+void HeatControl::control(Channel& channel, double time_s, double passed_s) {
     HeaterStatus& status = channel.status;
     const bool tunes = relay_ && relay_number_ == channel.port.number;
     const config::Heater& settings = channel.port.settings;
-    status.power = tunes ? relay_->update(time_s, status.temperature_c)
-                         : asking_power(channel.pid.update(status.target_c, status.temperature_c),
-                                        settings.max_power, settings.guard, channel.guard);
+    status.power =
+        tunes ? relay_->update(time_s, status.temperature_c)
+              : asking_power(channel.pid.update(status.target_c, status.temperature_c, passed_s),
+                             settings.max_power, settings.guard, channel.guard);
     // While its sensor gives bad figures, a heater stays off.
     if (channel.guard.bad > 0) status.power = 0;
-    status.on_s += status.power * tick_s;
+    status.on_s += status.power * passed_s;
 }
 
 bool HeatControl::reached(std::size_t number) const {

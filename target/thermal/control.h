@@ -74,9 +74,9 @@ private:
         double near_s = 0;  // for how long the reading has been near the target
     };
 
-    void sample(Channel& channel, double time_s);
+    void sample(Channel& channel, double time_s, double passed_s);
     void check_extrusion(const Channel& channel);
-    void control(Channel& channel, double time_s);
+    void control(Channel& channel, double time_s, double passed_s);
     const Channel* find(std::size_t number) const;
 
     std::vector<Channel> channels_;
@@ -86,6 +86,7 @@ private:
     std::optional<RelayTune> relay_;
     std::size_t relay_number_ = 0;
     std::vector<double> shares_;
+    std::optional<double> ticked_s_;  // the last tick's time
     std::optional<Trip> trip_;
 };
 

@@ -3,6 +3,7 @@
 #include "target/thermal/guard.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/text.h"
 
@@ -13,6 +14,9 @@ using config::GuardLimits;
 
 // Between the readings that the rate is taken from.
 constexpr double rate_window_s = 0.5;
+
+// Of gain_time_s: a sensor that lags by more could hardly show the gain in time.
+constexpr double longest_lag = 0.5;
 
 // What every message ends with.
 constexpr const char* consequence =
@@ -77,17 +81,27 @@ std::optional<Trip> check_rate(const std::string& heater, const GuardLimits& lim
                   change_c, time_s, r[0]));
 }
 
-void begin_phase(const GuardLimits& limits, GuardState& state, const Sample& sample) {
+void begin_heating(const GuardLimits& limits, GuardState& state, const Sample& sample) {
     const double t = sample.measured.temperature_c;
-    state.target_c = sample.target_c;
-    state.below_since_s.reset();
+    const bool goes_on =
+        state.broken_off_s && sample.time_s - *state.broken_off_s < limits.gain_time_s;
     state.highest_c.reset();
-    state.phase = Phase::off;
-    if (!(sample.target_c > 0)) return;
-    state.phase = t < sample.target_c - limits.stray_c ? Phase::heating : Phase::holding;
     state.heating_since_s = sample.time_s;
-    state.goal_c = t + limits.gain_c;
-    state.goal_time_s = sample.time_s + limits.gain_time_s;
+    state.goal_c = goes_on ? std::min(state.goal_c, t + limits.gain_c) : t + limits.gain_c;
+    state.goal_time_s = sample.time_s + (goes_on ? state.goal_left_s : limits.gain_time_s);
+}
+
+void take_target(const GuardLimits& limits, GuardState& state, const Sample& sample) {
+    const bool heated = state.phase == Phase::heating;
+    const bool has_target = sample.target_c > 0;
+    const bool heats =
+        has_target && sample.measured.temperature_c < sample.target_c - limits.stray_c;
+    state.target_c = sample.target_c;
+    state.phase = heats ? Phase::heating : has_target ? Phase::holding : Phase::off;
+    if (heats && !heated) begin_heating(limits, state, sample);
+    if (heats || !heated) return;
+    state.broken_off_s = sample.time_s;
+    state.goal_left_s = state.goal_time_s - sample.time_s;
 }
 
 std::optional<Trip> check_heating(const std::string& heater, const GuardLimits& limits,
@@ -95,6 +109,7 @@ std::optional<Trip> check_heating(const std::string& heater, const GuardLimits& 
     const double t = sample.measured.temperature_c;
     if (t >= state.target_c - limits.stray_c) {
         state.phase = Phase::holding;
+        state.broken_off_s.reset();
         return std::nullopt;
     }
     if (sample.time_s > state.heating_since_s + settle_s) {
@@ -139,21 +154,30 @@ std::optional<Trip> check_off(const std::string& heater, const GuardLimits& limi
                               GuardState& state, const Sample& sample) {
     const double t = sample.measured.temperature_c;
     if (sample.power > 0) {
+        state.has_heated = true;
         state.off_since_s.reset();
         state.lowest_c.reset();
         return std::nullopt;
     }
-    if (!state.off_since_s) state.off_since_s = sample.time_s;
-    if (sample.time_s - *state.off_since_s < settle_s) return std::nullopt;
-    const double passed_s = sample.time_s - state.last_time_s;
-    const double follow_c = passed_s * limits.stray_c / limits.stray_time_s;
+    if (!state.off_since_s) {
+        state.off_since_s = sample.time_s;
+        state.off_from_c = t;
+    }
+    const double off_s = sample.time_s - *state.off_since_s;
+    if (off_s < settle_s) return std::nullopt;
+    if (!state.lowest_c)
+        state.lagging_c_s = state.has_heated ? std::max(0.0, (t - state.off_from_c) / off_s) : 0;
+    const double neighbour_c_s = limits.stray_c / limits.stray_time_s;
+    const double lag_c_s =
+        state.lagging_c_s * std::exp((settle_s - off_s) / (longest_lag * limits.gain_time_s));
+    const double follow_c = (sample.time_s - state.last_time_s) * std::max(neighbour_c_s, lag_c_s);
     state.lowest_c = std::min(t, state.lowest_c.value_or(t) + follow_c);
     if (t <= *state.lowest_c + limits.stray_c) return std::nullopt;
     return trip(
         GuardKind::stuck_on, heater,
         formatted("%.1f °C and rising, though it has been switched off for %.0f s: its switch is "
                   "stuck on; cut the power now, and look at the transistor or relay",
-                  t, sample.time_s - *state.off_since_s));
+                  t, off_s));
 }
 
 std::optional<Trip> check_frozen(const std::string& heater, const GuardLimits& limits,
@@ -182,7 +206,7 @@ std::optional<Trip> watch(const std::string& heater, const GuardLimits& limits, 
     }
     state.bad = 0;
     std::optional<Trip> found = check_rate(heater, limits, state, sample);
-    if (sample.target_c != state.target_c) begin_phase(limits, state, sample);
+    if (sample.target_c != state.target_c) take_target(limits, state, sample);
     if (!found && state.phase == Phase::heating)
         found = check_heating(heater, limits, state, sample);
     if (!found && state.phase == Phase::holding)

@@ -5,12 +5,15 @@
 //  1. sensor: open, shorted, unreadable, below the range or above it (over-temperature), bad_samples times in
 //     a row; a good one in between starts the count anew.
 //  2. rate: between readings half a second apart, each the middle one of three, more than rate_c_s.
-//  3. heating too slow: while further than stray_c below the target, less than gain_c in gain_time_s.
+//  3. heating too slow: while further than stray_c below the target, less than gain_c in gain_time_s. Another target
+//     that is as far away sets that time back by nothing, and one that is not only stops it for less than gain_time_s.
 //  4. falling: while heating so, stray_c below the highest reading since heating began, the first settle_s
 //     left out, in which the sensor still tells of the time before.
 //  5. stray: once the target was reached, more than stray_c below it for longer than stray_time_s.
 //  6. stuck on: switched off for longer than settle_s, stray_c above the lowest reading since then. That mark
-//     follows upwards by stray_c in stray_time_s: what a neighbour warms slowly is not stuck.
+//     follows upwards by stray_c in stray_time_s: what a neighbour warms slowly is not stuck. After heating it
+//     follows the rise of those settle_s, if that is more, less and less: a sensor that lags by half of gain_time_s still
+//     has to tell of it.
 //  7. frozen: a sensor's figure exactly the same for frozen_time_s while there is a target. Only the figure of a
 //     converter that is fine and has noise never stands; asking_power() makes all others move.
 //  Each fires in the first sample for which it is true, within a tick of its condition.
@@ -73,9 +76,14 @@ struct GuardState {
     std::size_t reading_count = 0;
     double heating_since_s = 0;
     double goal_c = 0, goal_time_s = 0;  // to have gained by then
+    std::optional<double> broken_off_s;  // when another target ended the heating,
+    double goal_left_s = 0;              // and the time that it had left
     std::optional<double> highest_c;     // while heating
     std::optional<double> below_since_s;
+    bool has_heated = false;
     std::optional<double> off_since_s;
+    double off_from_c = 0;           // the reading then
+    double lagging_c_s = 0;          // how fast it rose in the first settle_s
     std::optional<double> lowest_c;  // while off
     double last_time_s = 0;
     std::optional<double> same_raw;

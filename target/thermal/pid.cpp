@@ -7,18 +7,18 @@
 
 namespace lyr::thermal {
 
-double PidController::update(double target_c, double measured_c) {
+double PidController::update(double target_c, double measured_c, double passed_s) {
     if (!begun_) smooth_c_ = measured_c;
     begun_ = true;
-    const double before_c = smooth_c_;
-    smooth_c_ += (measured_c - smooth_c_) * (tick_s / (smoothing_s + tick_s));
+    const double slope_c_s = (measured_c - smooth_c_) / (smoothing_s + passed_s);
+    smooth_c_ += slope_c_s * passed_s;
     if (!(target_c > 0) || !std::isfinite(measured_c)) {
         integral_ = 0;
         return 0;
     }
     const double error_c = target_c - measured_c;
-    const double direct = gains_.kp * error_c - gains_.kd * (smooth_c_ - before_c) / tick_s;
-    const double integral = integral_ + gains_.ki * error_c * tick_s;
+    const double direct = gains_.kp * error_c - gains_.kd * slope_c_s;
+    const double integral = integral_ + gains_.ki * error_c * passed_s;
     const double wanted = direct + integral;
     const bool winds_up = (wanted > max_power_ && error_c > 0) || (wanted < 0 && error_c < 0);
     if (!winds_up) integral_ = std::clamp(integral, 0.0, max_power_);

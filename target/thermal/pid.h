@@ -4,6 +4,7 @@
 //  1. The power is from 0 to max_power, whatever the readings are.
 //  2. No wind-up: while the output is at an end, the integral does not move further that way, and it never
 //     holds more than an output can be.
+//     Gains mean the same however long it was since the last reading.
 //  3. A step of the target makes no kick of the derivative, which is that of the (smoothed) reading.
 //  4. SlowPwm is on for its share of each cycle of whole ticks; what a cycle rounds off, the next ones make
 //     good. Power 0 switches off at once, in the middle of a cycle too.
@@ -25,8 +26,8 @@ public:
     PidController(const config::Pid& gains, double max_power)
         : gains_(gains), max_power_(max_power) {}
 
-    // Once a tick; a target of 0 or less is off.
-    double update(double target_c, double measured_c);
+    // `passed_s` since the last one; a target of 0 or less is off.
+    double update(double target_c, double measured_c, double passed_s = tick_s);
 
 private:
     config::Pid gains_;

@@ -174,6 +174,19 @@ TEST_CASE("check 1: what makes a board late, or leaves it unwatched, is a warnin
     folder.remove("dev/watchdog");
     CHECK(says(unguarded(), Severity::warning, "hangs"));
     CHECK(says(wrong("watchdog.device"), Severity::error, "/dev/watchdog is not there"));
+    folder.put("sys/devices/system/cpu/online", "0,2-3\n");
+    folder.put("sys/devices/system/cpu/isolated", "3\n");
+    const auto on_cpu = [&](unsigned cpu) {
+        printer.timing.cpu = cpu;
+        return problem(check(printer, good_board(folder)), "timing.cpu");
+    };
+    CHECK(says(on_cpu(0), Severity::warning, "isolcpus=0"));
+    CHECK(says(on_cpu(1), Severity::error, "which has 0,2-3"));
+    CHECK(says(on_cpu(2), Severity::warning, "isolcpus=2"));
+    CHECK(says(on_cpu(4), Severity::error, "no processor of this board"));
+    printer.timing.cpu = 3;
+    for (const Finding& finding : check(printer, good_board(folder)))
+        if (finding.subject == "timing.cpu") CHECK(finding.severity == Severity::note);
     printer.timing.late_ns.reset();
     Board board = good_board(folder);
     board.privileges = [] {

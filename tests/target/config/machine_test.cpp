@@ -94,6 +94,8 @@ TEST_CASE("machine: shapers and pressure advance, and what they need") {
     check_error("[shaper.x]\nkind = \"zv\"\nfrequncy_hz = 40\n", 3, "did you mean `frequency_hz`?");
     check_error("[shaper.y]\nfrequency_hz = 40\n", 1, "does nothing without shaper.y.kind");
     check_error("[timing]\nlate_us = 5000\n", 2, "later than pulse.late_limit_ms = 5");
+    check_error("[timing]\ncpu = 1024\n", 2, "a whole number from 0 to 1023");
+    check_error("[timing]\ncpu = 1.5\n", 2, "a whole number");
     check_error("max_jerk_mm_s3 = 0.5\n", 1, "from 1 on");
     CHECK(read("").minimum_cruise_ratio == 0);
     CHECK(read("minimum_cruise_ratio = 0.5\n").minimum_cruise_ratio == 0.5);

@@ -204,3 +204,47 @@ TEST_CASE("mover 3: a signal brings the machine to rest, with status stopped") {
     CHECK(bench.count() > 1'000'000);
     CHECK(bench.count() < 1'000'000 + 100 * 80);
 }
+
+TEST_CASE("mover 1: a contact that had closed when an approach began never triggered") {
+    config::Printer printer = one_axis();
+    gpio::VirtualClock clock;
+    gpio::MockInputs inputs(1, clock);
+    gpio::MockChip chip(8, clock, {});
+    Mover mover(printer, chip, clock, &inputs, nullptr);
+    printer.start_mm = {8, 0, 0};
+    REQUIRE(mover.run(printer, along_x(printer, 0.5, 50)).ok());
+    inputs.set(0, true, clock.now_ns());
+    const auto moved = mover.run(printer, along_x(printer, -8, 50), Contacts(1));
+    REQUIRE_MESSAGE(moved.ok(), moved.error().message);
+    REQUIRE(moved->at_contact[0]);
+    CHECK(*moved->at_contact[0] == motion::StepCounts{});
+    CHECK(moved->counts[0] < 0);
+    CHECK(moved->counts[0] > -200);
+}
+
+TEST_CASE("mover 1: a contact that was still bouncing when the machine came to rest was lost") {
+    for (const bool settles : {true, false}) {
+        CAPTURE(settles);
+        config::Printer printer = one_axis();
+        gpio::VirtualClock clock;
+        gpio::MockInputs inputs(1, clock);
+        int rises = 0;
+        gpio::LineMask before = 0;
+        gpio::MockChip chip(8, clock, [&](const gpio::LineWrite& write) {
+            rises += (write.levels & ~before & run::step_bit(0)) != 0;
+            const bool touches = rises == 80 && (write.levels & ~before & run::step_bit(0)) != 0;
+            before = write.levels;
+            // Edges up to 3 ms after the touch, or for longer than one would wait.
+            for (int i = 0; touches && i <= (settles ? 10 : 200); ++i)
+                inputs.set(0, i % 2 == 0, write.time_ns + i * 300'000);
+        });
+        Mover mover(printer, chip, clock, &inputs, nullptr);
+        printer.start_mm = {8, 0, 0};
+        const auto moved = mover.run(printer, along_x(printer, -1, 20), Contacts(1));
+        REQUIRE_MESSAGE(moved.ok(), moved.error().message);
+        CHECK(moved->counts[0] == -80);
+        REQUIRE(moved->at_contact[0].has_value() == settles);
+        if (settles) CHECK((*moved->at_contact[0])[0] == -80);
+        CHECK(clock.now_ns() < 500'000'000);
+    }
+}

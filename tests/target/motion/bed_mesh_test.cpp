@@ -166,4 +166,61 @@ TEST_CASE("limits 4: over a steep bed no way asks more of z than it can") {
     CHECK(strongest > 5);
 }
 
+TEST_CASE("limits 4: on a tilted bed z turns with an arc, and keeps to its acceleration") {
+    Limits limits = test::even_limits(1'000, 1e6);
+    limits.bed_jump_mm_s = 1e3;
+    const double slope = 0.02;
+    for (const double z_mm_s2 : {10.0, 100.0}) {
+        limits.axes[axis_z] = {1e3, z_mm_s2};
+        const BedMesh bed({0, 0}, {100, 100}, 2, {0, slope * 100, 0, slope * 100}, 0);
+        limits.bed = bed.shape();
+        for (const double radius_mm : {1.0, 5.0, 40.0}) {
+            const Path circle = circle_about({50 + radius_mm, 50, 0}, 50, 50, true, 0, 0);
+            const MoveLimits own = limits_of({circle, 1'000, 0, 0}, limits);
+            const double turning_mm_s2 = slope * own.speed_mm_s * own.speed_mm_s / radius_mm;
+            const double gaining_mm_s2 = slope * own.acceleration_mm_s2;
+            CHECK(std::hypot(turning_mm_s2, gaining_mm_s2) <= z_mm_s2 * (1 + 1e-9));
+            CHECK(turning_mm_s2 > z_mm_s2 / 4);
+        }
+    }
+}
+
+TEST_CASE("limits 4: the speed of z jumped where a bed had faded") {
+    Limits limits = test::even_limits(200, 3'000);
+    limits.axes[axis_z] = {40, 500};
+    const double fade_mm = 1;
+    // A flat bed that is 0.5 mm too high, one that is as crooked as that, and ways that meet both edges.
+    const std::vector<double> flat(4, 0.5), crooked{0.5, -0.2, 0.1, 0.4};
+    for (const std::vector<double>& heights_mm : {flat, crooked}) {
+        const BedMesh bed({0, 0}, {100, 100}, 2, heights_mm, fade_mm);
+        limits.bed = bed.shape();
+        for (const double rise_mm : {2.0, -2.0})
+            for (const Path& path :
+                 {Path{Line{{5, 5, 1 - rise_mm / 2}, {5, 5, 1 + rise_mm / 2}}},
+                  Path{Line{{5, 90, 1 - rise_mm / 2}, {5.5, 90, 1 + rise_mm / 2}}},
+                  Path{circle_about({50, 20, 1 - rise_mm / 2}, 50.5, 20, true, 1 + rise_mm / 2,
+                                    0)}}) {
+                const double speed_mm_s = limits_of({path, 1'000, 0, 0}, limits).speed_mm_s;
+                const double length_mm = length_of(path), h = 1e-5;
+                double worst_mm_s = 0;
+                for (const double edge_mm : {0.0, fade_mm}) {
+                    const double s = length_mm * (edge_mm - start_of(path).z) / rise_mm;
+                    if (s < 2 * h || s > length_mm - 2 * h) continue;
+                    const auto slope = [&](double from) {
+                        return (bed.lift_mm(point_at(path, from + h)) -
+                                bed.lift_mm(point_at(path, from))) /
+                               h;
+                    };
+                    worst_mm_s =
+                        std::max(worst_mm_s, speed_mm_s * std::abs(slope(s) - slope(s - h)));
+                }
+                CHECK(worst_mm_s > 0.01);
+                CHECK(worst_mm_s <= limits.bed_jump_mm_s * 1.001);
+            }
+        // What stays above is slowed by no edge.
+        const Line above{{50, 50, 2}, {50, 50, 20}};
+        CHECK(limits_of({above, 1'000, 0, 0}, limits).speed_mm_s > 20);
+    }
+}
+
 }  // namespace lyr::motion

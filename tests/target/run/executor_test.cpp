@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <random>
 #include <vector>
 
@@ -289,6 +290,108 @@ TEST_CASE("executor 5: a second request stops after the pulse that is out") {
     outcome.writes.pop_back();
     CHECK((outcome.writes.back().levels & all_step_bits) == 0);
     CHECK(outcome.writes.back().time_ns - requested_ns <= 20'000 + pulse.high_ns);
+}
+
+namespace {
+
+// Two motors at the same rate, half a period apart, whose pulses last longer than that: one is always out.
+struct Overlapping {
+    static constexpr config::PulseTiming pulse{25'000, 5'000, 1'000, 500, 5'000'000};
+    static constexpr std::int64_t period_ns = 40'000;
+    static constexpr std::size_t steps = 20'000;  // of each
+    std::vector<LineEvent> events;
+
+    Overlapping() {
+        PulseSchedule schedule(pulse, 0);
+        for (std::size_t i = 0; i < steps; ++i)
+            for (const std::uint8_t axis : std::array<std::uint8_t, 2>{0, 1}) {
+                const auto half = static_cast<std::int64_t>(2 * i + axis);
+                const Step step{1'000'000 + half * period_ns / 2, axis, true};
+                schedule.append(std::span(&step, 1), events);
+            }
+        schedule.finish(0, events);
+    }
+};
+
+}  // namespace
+
+TEST_CASE("executor 5: a stop among pulses that overlap waited for a gap that never came") {
+    const Overlapping motors;
+    const ExecutorTiming limits{25'000, 5'000'000, 60'000'000};
+    for (const int requests : {1, 2}) {
+        CAPTURE(requests);
+        StopRequests stop{0};
+        std::int64_t requested_ns = 0;
+        gpio::VirtualClock clock([&](std::int64_t time_ns) -> std::int64_t {
+            if (time_ns > 100'000'000 && !requested_ns) {
+                requested_ns = time_ns;
+                stop = requests;
+            }
+            return 0;
+        });
+        std::vector<gpio::LineWrite> writes;
+        PulseDecoder decoder({});
+        gpio::MockChip chip(8, clock, [&](const gpio::LineWrite& write) {
+            writes.push_back(write);
+            decoder.write(write);
+        });
+        Executor executor(chip, clock, limits, stop);
+        const Result<bool> result = executor.execute(motors.events);
+        REQUIRE(result.ok());
+        CHECK_FALSE(*result);
+        CHECK((writes.back().levels & all_step_bits) == 0);
+        const std::int64_t took_ns = writes.back().time_ns - requested_ns;
+        CHECK(took_ns <= (requests > 1 ? Overlapping::pulse.high_ns : 2 * limits.braking_ns));
+        for (const std::size_t axis : {0u, 1u}) {
+            CHECK(decoder.figures(axis).shortest_high_ns >= Overlapping::pulse.high_ns);
+            CHECK(executor.positions()[axis] == decoder.positions()[axis]);
+        }
+    }
+}
+
+TEST_CASE("executor 9: rests among pulses that overlap lose and double no step") {
+    const Overlapping motors;
+    const StopRequests stop{0};
+    WantedPace pace{1};
+    std::int64_t next_ns = 50'000'000;
+    gpio::VirtualClock clock([&](std::int64_t time_ns) -> std::int64_t {
+        if (time_ns > next_ns) pace = 0;
+        return 0;
+    });
+    PulseDecoder decoder({});
+    gpio::MockChip chip(8, clock, [&](const gpio::LineWrite& write) { decoder.write(write); });
+    Executor executor(chip, clock, {25'000, 5'000'000, 60'000'000}, stop, nullptr, &pace);
+    std::span<const LineEvent> left(motors.events);
+    const std::vector<Step> trip_steps{{1'000'000, 0, true}, {2'000'000, 0, false}};
+    int rests = 0;
+    for (;;) {
+        const Result<bool> done = executor.execute(left);
+        REQUIRE(done.ok());
+        left = left.subspan(executor.taken());
+        if (*done) break;
+        ++rests;
+        CHECK((executor.levels() & all_step_bits) == 0);
+        // A trip of an axis whose pulse was ended.
+        PulseSchedule schedule(Overlapping::pulse, executor.levels());
+        std::vector<LineEvent> trip;
+        schedule.begin(0, trip);
+        schedule.append(trip_steps, trip);
+        schedule.finish_as_begun(trip);
+        const Result<bool> back = executor.execute_trip(trip);
+        REQUIRE(back.ok());
+        CHECK(*back);
+        pace = 1;
+        next_ns = clock.now_ns() + 100'000'000;
+        executor.go_on();
+    }
+    CHECK(rests > 3);
+    for (const std::size_t axis : {0u, 1u}) {
+        CHECK(executor.positions()[axis] == Overlapping::steps);
+        CHECK(executor.trip_steps()[axis] == 0);
+        CHECK(decoder.positions()[axis] == Overlapping::steps);
+        CHECK(decoder.figures(axis).shortest_high_ns >= Overlapping::pulse.high_ns);
+        CHECK(decoder.figures(axis).shortest_low_ns >= Overlapping::pulse.low_ns);
+    }
 }
 
 TEST_CASE("executor 5: a request during a long pause is answered within a slice") {

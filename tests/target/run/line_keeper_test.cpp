@@ -174,6 +174,20 @@ TEST_CASE("line keeper 3: signals to the whole group do not end the keeper befor
     CHECK(comes([&] { return bench.levels() == 0; }));
 }
 
+TEST_CASE("line keeper 3: signals that ask a program to end do not end its keeper") {
+    const Bench bench;
+    auto chip = bench.keep();
+    REQUIRE(chip.ok());
+    REQUIRE((*chip)->write(0b11, 0b01).ok());
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGUSR1, SIGPIPE}) {
+        CAPTURE(signal);
+        ::kill(bench.keeper(), signal);
+        REQUIRE((*chip)->write(0b11, 0b10).ok());
+        CHECK(bench.keeper() != ::getpid());
+    }
+    CHECK(bench.levels() == 2);
+}
+
 TEST_CASE("line keeper 3: Ctrl-Z stopped the keeper with the program, and left the heater on") {
     for (const int signal : {SIGTSTP, SIGSTOP}) {
         CAPTURE(signal);

@@ -152,6 +152,24 @@ TEST_CASE("schedule 4: steps of the same nanosecond leave in one event") {
     CHECK(events[1].levels == 0);
 }
 
+TEST_CASE("schedule 2: what ends as it began leaves direction lines steady for what comes next") {
+    const gpio::LineMask idle = direction_bit(0) | gpio::line_bit(8);
+    PulseSchedule schedule(timing, idle);
+    std::vector<LineEvent> events;
+    schedule.begin(0, events);
+    schedule.append(std::vector<Step>{{50'000, 0, false}, {60'000, 1, true}}, events);
+    schedule.finish_as_begun(events);
+    REQUIRE(events.size() > 4);
+    CHECK(events.front().levels == idle);
+    // The last turns are followed by the time that a driver needs before a step.
+    std::size_t turned = events.size() - 1;
+    while (((events[turned].levels ^ events[turned - 1].levels) & all_direction_bits) == 0)
+        --turned;
+    CHECK(events[turned].levels == idle);
+    CHECK(events.back().levels == idle);
+    CHECK(events.back().time_ns - events[turned].time_ns >= timing.direction_setup_ns);
+}
+
 TEST_CASE("schedule: appended in pieces of any size it gives the same events") {
     const std::vector<Step> steps = random_steps(3'000, 2'500, 17);
     PulseSchedule whole(timing, 0);

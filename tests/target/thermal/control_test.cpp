@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "target/gpio/mock_chip.h"
 #include "target/thermal/faults_scene.h"
 
 using namespace lyr;
@@ -51,6 +52,55 @@ TEST_CASE("control: heaters reach their targets, overshoot little and hold them"
             CHECK(run.lowest_c > target_c - 3);
             CHECK(std::abs(heat.body_c(heater) - target_c) < 1.5);
         }
+    }
+}
+
+TEST_CASE("control: a heater is off while its sensor gives bad figures, before any guard fires") {
+    for (const char* fault : {"open", "short", "unreadable"}) {
+        CAPTURE(fault);
+        const std::string script = "20 " + std::string(fault) + " tool\n20.25 mend tool\n";
+        config::Printer printer = heated_printer();
+        SimulatedHeat heat(printer, faults_of(script, printer));
+        heat.control().set_target(config::heater_tool, 210);
+        heat.advance_to(19.9);
+        REQUIRE(heat.any_heater_on());
+        int off = 0;
+        heat.observe([&](double) { off += !heat.any_heater_on(); });
+        heat.advance_to(20.2);
+        CHECK(off == 3);
+        heat.advance_to(25);
+        CHECK(off == 3);
+        CHECK_FALSE(heat.control().trip());
+    }
+}
+
+TEST_CASE("control: ticks that come late mean as much power and time as those in time") {
+    for (const double passed_s : {tick_s, 8 * tick_s}) {
+        CAPTURE(passed_s);
+        gpio::VirtualClock clock;
+        gpio::MockChip chip(1, clock, {});
+        std::vector<Output> outputs;
+        outputs.push_back({LineOutput{0, SlowPwm(1)}, true});
+        PowerStage stage(std::move(outputs), &chip);
+        config::Heater tool = config::default_heater(config::heater_tool);
+        tool.pid = {0, 0.01, 0};
+        tool.guard.frozen_time_s = 1'000;
+        std::vector<HeaterPort> ports;
+        ports.push_back(
+            {config::heater_tool, tool, std::make_unique<MockSensor>([&]() -> Result<double> {
+                 return raw_of(SensorScale(tool.sensor), 199);
+             })});
+        HeatControl control(std::move(ports), false, stage);
+        control.set_target(config::heater_tool, 200);
+        for (int i = 0; i * passed_s < 40; ++i) {
+            control.tick(i * passed_s);
+            const double near_s = i * passed_s;
+            if (near_s < reached_s - 2 * tick_s) CHECK_FALSE(control.reached(config::heater_tool));
+            if (near_s > reached_s) CHECK(control.reached(config::heater_tool));
+        }
+        const HeaterStatus& status = *control.status(config::heater_tool);
+        CHECK(status.power == doctest::Approx(0.4).epsilon(0.03));
+        CHECK(status.on_s == doctest::Approx(0.01 * 40 * 40 / 2).epsilon(0.03));
     }
 }
 

@@ -104,6 +104,55 @@ TEST_CASE("guard 3: heating must gain 2 °C in 20 s, all the way") {
         off, [](double) { return 25.0; }, 100));
 }
 
+TEST_CASE("guard 3: a target that changed often gave a dead heater its time anew each time") {
+    // A heater that is dead from the begin, and one that died at its target and cools; targets that change every 8 s.
+    const config::GuardLimits limits = config::default_heater(config::heater_tool).guard;
+    for (const double other_c : {209.0, 211.0, 150.0, 30.0, 0.0})
+        for (const bool is_cold : {true, false}) {
+            CAPTURE(other_c);
+            CAPTURE(is_cold);
+            GuardState state;
+            std::optional<Trip> trip;
+            double time_s = 0;
+            for (int tick = 0; !trip && time_s < 900; time_s = ++tick * tick_s) {
+                const double target_c = std::fmod(time_s, 16) < 8 ? 210 : other_c;
+                const double t = is_cold ? 22 : 21 + 189 * std::exp(-time_s / 120);
+                const Sample sample{time_s, 2'000.0 + tick % 2, {t}, target_c, 1};
+                trip = watch("tool", limits, state, sample);
+            }
+            REQUIRE(trip);
+            CHECK(time_s < 60);
+        }
+}
+
+TEST_CASE("guard 3: targets that change often do not make a heater that heats too slow") {
+    for (const double other_c : {211.0, 150.0, 0.0}) {
+        CAPTURE(other_c);
+        const config::GuardLimits limits = config::default_heater(config::heater_tool).guard;
+        GuardState state;
+        double t = 22;
+        for (int tick = 0; tick * tick_s < 900; ++tick) {
+            const double time_s = tick * tick_s;
+            const double target_c = std::fmod(time_s, 16) < 8 ? 210 : other_c;
+            const Sample sample{time_s, 2'000.0 + tick % 2, {t}, target_c, 1};
+            CHECK_FALSE(watch("tool", limits, state, sample));
+            t += (t < target_c ? 1.5 : -0.5) * tick_s;
+        }
+    }
+}
+
+TEST_CASE("guard 3: what was left of a time is gone once the target was reached") {
+    const config::GuardLimits limits = config::default_heater(config::heater_tool).guard;
+    GuardState state;
+    // A target that is too far for 19 s, near at once, a little too far, and far again.
+    for (int tick = 0; tick < 380; ++tick) {
+        const double time_s = tick * tick_s, t = time_s < 19.6 ? 100 : 101;
+        const double target_c = time_s < 19 ? 210 : time_s < 19.4 ? 102 : time_s < 20 ? 104.5 : 150;
+        const Sample sample{time_s, 2'000.0 + tick % 2, {t}, target_c, 1};
+        CHECK_FALSE(watch("tool", limits, state, sample));
+    }
+}
+
 TEST_CASE("guard 4: falling while heating, but for the first seconds") {
     const Watched watched;
     const auto falls = fired(
@@ -132,6 +181,26 @@ TEST_CASE("guard 5: straying for longer than 40 s, and not for less") {
         watched, [](double t) { return std::fmod(t, 40) < 30 && t > 40 ? 194.0 : 200.0; }, 400));
 }
 
+TEST_CASE("guard 5: how long one has strayed is forgotten with the target") {
+    const config::GuardLimits limits = config::default_heater(config::heater_tool).guard;
+    GuardState state;
+    const auto holds = [&](double from_s, double to_s, double target_c, double t) {
+        for (int tick = static_cast<int>(from_s / tick_s); tick * tick_s < to_s; ++tick) {
+            const Sample sample{tick * tick_s, 2'000.0 + tick % 2, {t}, target_c, 1};
+            const auto trip = watch("tool", limits, state, sample);
+            if (trip) return false;
+        }
+        return true;
+    };
+    CHECK(holds(0, 10, 200, 200));
+    CHECK(holds(10, 45, 200, 195));
+    // Near enough to a higher one in a single sample, and less so afterwards.
+    CHECK(holds(45, 50, 210, 204));
+    CHECK(holds(50, 50.1, 210, 206.1));
+    CHECK(holds(50.1, 90, 210, 205.9));
+    CHECK_FALSE(holds(90, 92, 210, 205.9));
+}
+
 TEST_CASE("guard 6: rising while off, but neither the lag nor a warm neighbour") {
     Watched off;
     off.target_c = 0;
@@ -151,6 +220,34 @@ TEST_CASE("guard 6: rising while off, but neither the lag nor a warm neighbour")
     on.power = 0.2;
     CHECK_FALSE(fired(
         on, [](double t) { return 25 + 0.5 * t; }, 60));
+}
+
+TEST_CASE("guard 6: what a slow sensor still has to tell was taken for a stuck switch") {
+    // A bed of 400 W: the plate gains 0.55 °C/s, and its sensor lags by 30 s.
+    const double gain_c_s = 0.55, lag_s = 30, off_s = 100;
+    config::GuardLimits limits = config::default_heater(config::heater_bed).guard;
+    const auto watched = [&](bool sticks) -> std::optional<Fired> {
+        GuardState state;
+        double plate_c = 21, sensor_c = 21;
+        for (int tick = 0; tick * tick_s < off_s + 200; ++tick) {
+            const double time_s = tick * tick_s, power = time_s < off_s ? 1 : 0;
+            const Sample sample{
+                time_s, 2'000.0 + tick % 2, {sensor_c}, power > 0 ? 120.0 : 0.0, power};
+            if (const auto trip = watch("bed", limits, state, sample))
+                return Fired{trip->kind, time_s};
+            if (power > 0 || sticks) plate_c += gain_c_s * tick_s;
+            sensor_c += (plate_c - sensor_c) * tick_s / lag_s;
+        }
+        return std::nullopt;
+    };
+    CHECK_FALSE(watched(false));
+    const auto stuck = watched(true);
+    REQUIRE(stuck);
+    CHECK(stuck->kind == GuardKind::stuck_on);
+    CHECK(stuck->time_s < off_s + settle_s + 25);
+    // An owner who promises a faster sensor has it found sooner.
+    limits.gain_time_s = 20;
+    CHECK(watched(true)->time_s < stuck->time_s - 5);
 }
 
 TEST_CASE("guard 7: a figure that never changes while there is a target") {

@@ -138,4 +138,21 @@ TEST_CASE("kernel pwm: a channel is enabled with nothing on it, set in nanosecon
         CHECK(folder.held("duty_cycle") == 0);
     }
     CHECK(folder.held("duty_cycle") == 0);
+    // By itself, and where its stage has been released.
+    Result<KernelPwm> again = KernelPwm::open(folder.path);
+    REQUIRE(again.ok());
+    {
+        KernelPwm pwm = std::move(*again);
+        REQUIRE(pwm.set(0.5).ok());
+        CHECK(folder.held("duty_cycle") == 20'000);
+    }
+    CHECK(folder.held("duty_cycle") == 0);
+    std::vector<Output> outputs;
+    outputs.push_back({std::move(*KernelPwm::open(folder.path)), true});
+    PowerStage stage(std::move(outputs), nullptr);
+    REQUIRE(stage.apply(std::array{0.5}, 0).ok());
+    REQUIRE(stage.release().ok());
+    CHECK(stage.latched());
+    REQUIRE(stage.apply(std::array{0.5}, 0.1).ok());
+    CHECK(folder.held("duty_cycle") == 0);
 }

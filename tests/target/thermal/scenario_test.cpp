@@ -1,5 +1,6 @@
 // Faults in a machine that runs: which guard fires, how soon, and that every heater line goes off.
 
+#include <cmath>
 #include <map>
 
 #include "target/thermal/faults_scene.h"
@@ -98,6 +99,17 @@ TEST_CASE("scenarios: heating too slow, in 20 s for a hotend and 60 s for a bed"
     check_trip("0 no_power chamber", GuardKind::too_slow, 180, 181, {0, 0, 40});
     check_trip("0 weak tool 0.05", GuardKind::too_slow, 20, 90);
     check_trip("0 weak bed 0.1", GuardKind::too_slow, 60, 400);
+}
+
+TEST_CASE("scenarios: a heater that dies while its target changes every 8 s") {
+    SimulatedHeat heat(heated_printer(), faults_of("300 no_power tool"));
+    for (double time_s = 0; time_s < 400 && !heat.control().trip(); time_s += 8) {
+        const bool is_raised = time_s >= 300 && std::fmod(time_s, 16) < 8;
+        heat.control().set_target(config::heater_tool, is_raised ? 211 : 210);
+        heat.advance_to(time_s + 8);
+    }
+    REQUIRE(heat.control().trip());
+    CHECK(*heat.tripped_s() < 340);
 }
 
 TEST_CASE("scenarios: temperature falling while heating") {

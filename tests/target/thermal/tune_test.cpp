@@ -63,6 +63,30 @@ TEST_CASE("tune: the gains that it finds reach the target and hold it, for heate
         }
 }
 
+TEST_CASE("tune: strong beds with slow sensors were taken for stuck on") {
+    struct Bed {
+        double power_w, lag_s, capacity_j_k;
+    };
+    for (const Bed& bed :
+         {Bed{220, 30, 700}, Bed{400, 30, 700}, Bed{300, 45, 1'500}, Bed{600, 25, 1'500}}) {
+        CAPTURE(bed.power_w);
+        config::Printer printer = heated_printer();
+        config::HeatModel& model = printer.heaters[config::heater_bed]->model;
+        model.power_w = bed.power_w;
+        model.lag_s = bed.lag_s;
+        model.capacity_j_k = bed.capacity_j_k;
+        CHECK(tuned(printer, config::heater_bed, 60).ultimate_period_s > bed.lag_s);
+        // And a target that is lowered while it heats.
+        SimulatedHeat heat(printer, {});
+        heat.control().set_target(config::heater_bed, 100);
+        while (heat.control().status(config::heater_bed)->temperature_c < 60)
+            heat.advance_to(heat.time_s() + 1);
+        heat.control().set_target(config::heater_bed, 60);
+        heat.advance_to(heat.time_s() + 300);
+        CHECK_FALSE(heat.control().trip());
+    }
+}
+
 TEST_CASE("tune 1: the power is within its bounds, and off at the end") {
     RelayTune tune(100, 0.6);
     double temperature_c = 20;
