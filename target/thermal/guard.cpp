@@ -18,6 +18,9 @@ constexpr double rate_window_s = 0.5;
 // Of gain_time_s: a sensor that lags by more could hardly show the gain in time.
 constexpr double longest_lag = 0.5;
 
+// A hotend over a warm bed gains 0.03 °C/s.
+constexpr double neighbour_most_c_s = 0.05;
+
 // What every message ends with.
 constexpr const char* consequence =
     "; all heaters are off and stay so until lyrrun is started again";
@@ -167,7 +170,7 @@ std::optional<Trip> check_off(const std::string& heater, const GuardLimits& limi
     if (off_s < settle_s) return std::nullopt;
     if (!state.lowest_c)
         state.lagging_c_s = state.has_heated ? std::max(0.0, (t - state.off_from_c) / off_s) : 0;
-    const double neighbour_c_s = limits.stray_c / limits.stray_time_s;
+    const double neighbour_c_s = std::min(neighbour_most_c_s, limits.stray_c / limits.stray_time_s);
     const double lag_c_s =
         state.lagging_c_s * std::exp((settle_s - off_s) / (longest_lag * limits.gain_time_s));
     const double follow_c = (sample.time_s - state.last_time_s) * std::max(neighbour_c_s, lag_c_s);

@@ -250,6 +250,18 @@ TEST_CASE("guard 6: what a slow sensor still has to tell was taken for a stuck s
     CHECK(watched(true)->time_s < stuck->time_s - 5);
 }
 
+TEST_CASE(
+    "guard 6: a weak bed that was stuck on was found after half an hour, at the end of its range") {
+    Watched off;
+    off.limits = config::default_heater(config::heater_bed).guard;
+    off.target_c = off.power = 0;
+    const auto rises = fired(
+        off, [](double t) { return 25 + 0.086 * t; }, 1'800);
+    REQUIRE(rises);
+    CHECK(rises->kind == GuardKind::stuck_on);
+    CHECK(rises->time_s < 75);
+}
+
 TEST_CASE("guard 7: a figure that never changes while there is a target") {
     Watched watched;
     watched.noisy = false;
