@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/constants.h"
 #include "profile/keys.h"
 #include "profile/section.h"
 
@@ -44,7 +45,6 @@ constexpr std::string_view extrusion_names[] = {"relative", "absolute"};
 
 // Lengths that follow from others are whole nanometres, so that 3/4 of 0.4 is 0.3.
 double times(double length_mm, double factor) {
-    constexpr double nm_per_mm = 1e6;
     return std::round(length_mm * factor * nm_per_mm) / nm_per_mm;
 }
 
@@ -229,7 +229,8 @@ void add_travel(std::vector<Key>& keys) {
             "retract_before_wipe", &Travel::retract_before_wipe, part,
             "How much of a retraction comes before the wipe; more where the wipe is too short "
             "for the rest")
-        .number("z_hop", &Travel::z_hop_mm, mm, {0, 10}, "How far the nozzle is raised where it retracts; 0: not")
+        .number("z_hop", &Travel::z_hop_mm, mm, {0, 10},
+                "How far the nozzle is raised where it retracts; 0: not")
         .flag("avoid_crossing", &Travel::avoid_crossing, "Travel around walls where that is near");
 }
 

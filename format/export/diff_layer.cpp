@@ -7,12 +7,11 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/constants.h"
 #include "base/text.h"
 
 namespace lyr::format {
 namespace {
-
-constexpr double nm_per_mm = 1e6;
 
 struct Scaled {
     std::int64_t nm;

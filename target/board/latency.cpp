@@ -18,8 +18,6 @@
 namespace lyr::board {
 namespace {
 
-constexpr double ns_per_us = 1e3;
-
 // Longer than MonotonicClock stays awake for: the thread sleeps.
 constexpr std::int64_t sparse_ns = 1'000'000;
 static_assert(sparse_ns > gpio::MonotonicClock::awake_ns);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "base/constants.h"
 #include "target/config/heater_keys.h"
 #include "target/config/homing_keys.h"
 #include "target/config/key_rules.h"
@@ -12,9 +13,6 @@
 
 namespace lyr::config {
 namespace {
-
-constexpr double ns_per_us = 1e3;
-constexpr double ns_per_ms = 1e6;
 
 Key nanoseconds(std::string path, Range range, double ns_per_unit,
                 std::int64_t PulseTiming::*field) {

@@ -13,7 +13,6 @@
 namespace lyr::config {
 namespace {
 
-constexpr double ns_per_ms = 1e6;
 constexpr std::array<std::string_view, 3> kinematics_names{"cartesian", "corexy", "delta"};
 constexpr std::array<std::string_view, 4> shaper_names{"none", "zv", "mzv", "ei"};
 

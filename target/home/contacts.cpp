@@ -2,10 +2,10 @@
 
 #include <cmath>
 
+#include "base/constants.h"
+
 namespace lyr::home {
 namespace {
-
-constexpr double ns_per_ms = 1e6;
 
 const std::optional<config::Pin>& pin_of(const config::Printer& printer, std::size_t contact) {
     static const std::optional<config::Pin> none;

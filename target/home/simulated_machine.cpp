@@ -13,7 +13,6 @@ namespace {
 
 using config::axis_x, config::axis_y, config::axis_z;
 
-constexpr double ns_per_ms = 1e6;
 // A contact that bounces opens and closes so often.
 constexpr double bounce_ms = 0.2;
 

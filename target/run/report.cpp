@@ -16,7 +16,6 @@ using config::axis_count;
 using config::axis_names;
 
 constexpr double half_step = 0.5;
-constexpr double ns_per_us = 1e3;
 // Of positions in double precision, in steps: far above rounding, far below anything a motor does.
 constexpr double rounding_steps = 1e-6;
 
