@@ -13,6 +13,7 @@
 
 #include "target/config/printer.h"
 #include "target/run/file_path.h"
+#include "target/run/print_file.h"
 
 namespace lyr::run {
 
@@ -24,9 +25,10 @@ struct Inspection {
     double filament_diameter_mm = 0;  // the printer's, or else the file's
 };
 
-// What every pass over the file opens it with: nothing is kept that a printer does not need.
+// For one pass over a file.
 Result<format::Reader> open_file(const std::string& path, std::uint32_t first_layer = 0);
 
+Result<Inspection> inspect(const PrintFile& print, const config::Printer& printer);
 Result<Inspection> inspect(const std::string& path, const config::Printer& printer);
 
 }  // namespace lyr::run

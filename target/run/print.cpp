@@ -70,15 +70,17 @@ private:
     std::optional<thermal::Trip> trip_;
 };
 
-// The planning thread.
-Status fill(EventStream& stream, Shared& shared) {
+// The planning thread. Of a file that was changed after its inspection nothing gets into the ring.
+Status fill(const PrintFile& file, EventStream& stream, Shared& shared) {
     std::vector<LineEvent> events;
     Status status = Done{};
     for (bool more = true; more && !shared.finished.load();) {
         events.clear();
-        const Result<bool> next = stream.next(events);
+        Result<bool> next = stream.next(events);
+        if (Status same = file.check(); !same) next = same.error();
         if (!next) {
             status = next.error();
+            events.clear();
             // What the ring still holds is enough to brake on.
             ++shared.stop_requests;
         }
@@ -219,6 +221,7 @@ Diagnostic derailed(Diagnostic error) {
 
 // What is known and decided before a line is touched.
 struct Prepared {
+    PrintFile file;
     Inspection inspection;
     Diagnostics notes;
 };
@@ -228,9 +231,11 @@ bool can_resume(const PrintJob& job) {
 }
 
 Result<Prepared> prepare(const PrintJob& job) {
-    Result<Inspection> inspection = inspect(job.file, job.printer);
+    Result<PrintFile> file = PrintFile::open(job.file);
+    if (!file) return file.error();
+    Result<Inspection> inspection = inspect(*file, job.printer);
     if (!inspection) return inspection.error();
-    Prepared prepared{std::move(*inspection), {}};
+    Prepared prepared{std::move(*file), std::move(*inspection), {}};
     const Status possible = check_demands(prepared.inspection, job.printer, job.no_heat,
                                           prepared.notes, can_resume(job));
     if (!possible) return possible.error();
@@ -346,9 +351,11 @@ Result<PrintReport> run(const PrintJob& job, const Prepared& prepared, gpio::Gpi
     Running running(job, inspection, chip, clock, heating);
     Shared& shared = running.shared;
     Life& life = running.life;
-    Result<EventStream> stream =
-        EventStream::open(job.file, running.printer, inspection.filament_diameter_mm,
-                          &shared.orders, job.resumption ? job.resumption->first_layer : 0);
+    Result<format::Reader> reader =
+        prepared.file.reader(job.resumption ? job.resumption->first_layer : 0);
+    if (!reader) return reader.error();
+    Result<EventStream> stream = EventStream::open(std::move(*reader), job.file, running.printer,
+                                                   inspection.filament_diameter_mm, &shared.orders);
     if (!stream) return stream.error();
     stream->heed_speed(shared.course.plan_factor);
     const StopSignals signals;
@@ -360,7 +367,7 @@ Result<PrintReport> run(const PrintJob& job, const Prepared& prepared, gpio::Gpi
     lock_memory(report.warnings);
     if (job.begun) job.begun();
     Tending tending(heating, shared);
-    std::thread planner([&] { running.outcome.planned = fill(*stream, shared); });
+    std::thread planner([&] { running.outcome.planned = fill(prepared.file, *stream, shared); });
     std::thread edges([&] { drive(running, chip, report.warnings); });
     {
         Supervision supervision(std::move(around.watchdog));

@@ -3,7 +3,8 @@
 //
 // Contract
 //  1. Nothing moves before inspect() has found the whole file right and check_demands() has found
-//     nothing that this machine cannot do.
+//     nothing that this machine cannot do. A file that is changed after that ends the print, and nothing of what is new
+//     in it is printed.
 //  2. Heaters do what the file orders, tended by a thread of their own; with `no_heat` none is touched. When a guard
 //     fires, all heaters are off at once, the head comes to rest, and the guard's message (status machine) is the
 //     result.
