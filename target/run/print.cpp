@@ -10,6 +10,7 @@
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include "base/constants.h"
 #include "base/text.h"
@@ -20,6 +21,7 @@
 #include "target/run/event_stream.h"
 #include "target/run/executor.h"
 #include "target/run/life.h"
+#include "target/run/opening.h"
 #include "target/run/real_time.h"
 #include "target/run/stop_signals.h"
 #include "target/run/watchdog.h"
@@ -134,28 +136,6 @@ private:
     double next_s_ = 0;
 };
 
-// Feeds the board's watchdog and the init system's once a second, while the heaters are tended.
-class Supervision {
-public:
-    explicit Supervision(std::optional<Watchdog> watchdog) : watchdog_(std::move(watchdog)) {
-        notify("READY=1");
-    }
-    void feed(double now_s, const Shared& shared, bool heats, const std::string& text) {
-        if (now_s < next_s_) return;
-        next_s_ = now_s + 1;
-        const std::uint32_t ticks = shared.heat_ticks.load();
-        if (heats && ticks == seen_ticks_) return;
-        seen_ticks_ = ticks;
-        if (watchdog_) watchdog_->feed();
-        notify("WATCHDOG=1\nSTATUS=" + text);
-    }
-
-private:
-    std::optional<Watchdog> watchdog_;
-    double next_s_ = 0;
-    std::uint32_t seen_ticks_ = 0;
-};
-
 void press(Buttons& buttons, std::int64_t now_ns, Life& life, Shared& shared) {
     const Result<std::vector<std::size_t>> pressed = buttons.pressed(now_ns);
     if (!pressed) return shared.tripped({thermal::GuardKind::silent, pressed.error().message});
@@ -178,6 +158,42 @@ struct Watched {
     Supervision& supervision;
 };
 
+// What goes on beside the motion of a print and that before it.
+void look_after(const Watched& watched, double now_s) {
+    auto& [signals, shared, life, heating, buttons, supervision] = watched;
+    if (heating)
+        if (const auto silent = heating->stage->expire(now_s)) shared.tripped(*silent);
+    if (buttons) press(*buttons, gpio::MonotonicClock().now_ns(), life, shared);
+    if (heating && shared.trip()) (void)heating->stage->all_off();
+    supervision.feed(now_s, heating ? std::optional(shared.heat_ticks.load()) : std::nullopt,
+                     status_text(shared.control.status()));
+}
+
+// What is to be done before the path, and whether that may begin.
+Status open(const Watched& watched, const PrintJob& job, const Inspection& inspection,
+            gpio::GpioChip& chip, gpio::Clock& clock) {
+    if (!job.before) return Done{};
+    Shared& shared = watched.shared;
+    PrintStatus status = shared.control.status();
+    status.layers = inspection.totals.layers;
+    status.estimated_s = inspection.header.summary.estimated_time_s;
+    Opening opening(shared.control, shared.desk, watched.signals, std::move(status),
+                    [&](double now_s) { look_after(watched, now_s); });
+    const Status ready = job.before(chip, clock, [&] { return opening.asked(); });
+    (void)opening.asked();
+    if (shared.stop_requests.load() == 0) return ready;
+    const bool cancelled = shared.control.ends();
+    // Serves an emergency stop.
+    watched.life.tick(heat_time_s());
+    if (const auto trip = shared.trip()) return diagnostic_of(*trip);
+    return Diagnostic{
+        Severity::error,
+        ExitStatus::stopped,
+        watched.life.ended_by().value_or(cancelled ? "cancelled" : "stopped on request") +
+            "; before the path began, all lines are released",
+        {}};
+}
+
 // Until the real-time thread has ended.
 void watch(const Watched& watched, const PrintJob& job, const Inspection& inspection) {
     auto& [signals, shared, life, heating, buttons, supervision] = watched;
@@ -186,13 +202,9 @@ void watch(const Watched& watched, const PrintJob& job, const Inspection& inspec
     while (!shared.finished.load()) {
         if (signals.wait_ms(signal_wait_ms)) ++shared.stop_requests;
         const double now_s = heat_time_s();
-        if (heating)
-            if (const auto silent = heating->stage->expire(now_s)) shared.tripped(*silent);
         if (!heating) idle.tick(now_s);
-        if (buttons) press(*buttons, gpio::MonotonicClock().now_ns(), life, shared);
-        if (heating && shared.trip()) (void)heating->stage->all_off();
+        look_after(watched, now_s);
         life.tick(now_s);
-        supervision.feed(now_s, shared, heating, status_text(shared.control.status()));
         if (!job.progress || now_s < next_progress_s) continue;
         next_progress_s = now_s + progress_s;
         job.progress({life.layer(), inspection.totals.layers,
@@ -361,21 +373,28 @@ Result<PrintReport> run(const PrintJob& job, const Prepared& prepared, gpio::Gpi
     const StopSignals signals;
     PrintReport report;
     report.warnings = prepared.notes;
+    lock_memory(report.warnings);
+    if (job.begun) job.begun();
+    // At once: the keeper of the heaters' lines expects to hear of them.
+    Tending tending(heating, shared);
+    Supervision supervision(std::move(around.watchdog));
+    const Watched watched{signals, shared, life, heating, around.buttons, supervision};
+    if (const Status opened = open(watched, job, inspection, chip, clock); !opened) {
+        shared.finished.store(true);
+        tending.join();
+        (void)chip.release();
+        life.end(opened, false);
+        return opened.error();
+    }
     FileIdentity identity;
     const std::unique_ptr<JournalWriter> journal = journal_for(job, identity, report.warnings);
     life.keep_journal(journal.get(), identity);
-    lock_memory(report.warnings);
-    if (job.begun) job.begun();
-    Tending tending(heating, shared);
     std::thread planner([&] { running.outcome.planned = fill(prepared.file, *stream, shared); });
     std::thread edges([&] { drive(running, chip, report.warnings); });
-    {
-        Supervision supervision(std::move(around.watchdog));
-        watch({signals, shared, life, heating, around.buttons, supervision}, job, inspection);
-        edges.join();
-        planner.join();
-        tending.join();
-    }
+    watch(watched, job, inspection);
+    edges.join();
+    planner.join();
+    tending.join();
     const Status status = status_of(shared, life, running.outcome);
     const bool is_known = running.outcome.executed.ok() && shared.stop_requests < 2;
     if (journal && (status || life.is_cancelled()))
@@ -389,16 +408,6 @@ Result<PrintReport> run(const PrintJob& job, const Prepared& prepared, gpio::Gpi
     report_on(running.executor, running.traced, report);
     report.paused_s = life.paused_s();
     return report;
-}
-
-Result<std::optional<Buttons>> open_buttons(const config::Printer& printer) {
-    const std::vector<gpio::InputRequest> requests = input_requests(printer);
-    if (requests.empty()) return std::optional<Buttons>();
-    auto lines = gpio::open_gpiod_inputs(requests);
-    if (!lines) return lines.error();
-    Result<Buttons> buttons = Buttons::start(printer, std::move(*lines));
-    if (!buttons) return buttons.error();
-    return std::optional<Buttons>(std::move(*buttons));
 }
 
 }  // namespace
@@ -426,9 +435,6 @@ Result<PrintReport> print(const PrintJob& job) {
     const Result<std::unique_ptr<gpio::GpioChip>> chip = gpio::open_gpiod_chip(*requests);
     if (!chip) return chip.error();
     gpio::MonotonicClock clock;
-    // Before the heaters: their keeper is a process of its own, which expects to hear of them.
-    if (job.before)
-        if (Status ready = job.before(**chip, clock); !ready) return ready.error();
     std::optional<Heating> heating;
     const Demands& demands = prepared->inspection.demands;
     if (!job.no_heat && !demands.hottest.empty()) {

@@ -2,10 +2,14 @@
 
 #include <doctest/doctest.h>
 
+#include <atomic>
+#include <csignal>
 #include <fstream>
+#include <functional>
 #include <thread>
 
 #include "target/gpio/mock_chip.h"
+#include "target/gpio/mock_inputs.h"
 #include "target/run/print.h"
 #include "target/run/print_files.h"
 
@@ -87,4 +91,131 @@ TEST_CASE("print 1: a file that is written to while it is printed brings the hea
         most = std::max(most, x);
     }
     CHECK(static_cast<double>(most) / job.printer.axes[0].steps_per_mm < 65);
+}
+
+namespace {
+
+// Homing, as far as its being asked to stop goes: for a second, unless it is.
+Status home_for_a_second(const StopSource& stop, unsigned& asked,
+                         const std::function<void()>& meanwhile) {
+    for (int i = 0; i < 1'000 && asked == 0; ++i) {
+        if (i == 100) meanwhile();
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        asked += stop();
+    }
+    if (asked == 0) return Done{};
+    return Diagnostic{Severity::error, ExitStatus::stopped, "stopped on request", {}};
+}
+
+struct Homed {
+    Result<PrintReport> report = PrintReport{};
+    unsigned asked = 0;
+    PrintStatus meanwhile, end;
+    std::size_t writes = 0;
+};
+
+// What `disturb` does while it homes.
+Homed print_and_disturb(const std::function<void(PrintControl&, gpio::MockInputs&)>& disturb) {
+    Homed homed;
+    config::Printer printer = starting_printer();
+    printer.inputs[config::input_emergency] = config::Pin{"gpiochip0", 20U, false};
+    gpio::MonotonicClock clock;
+    std::vector<gpio::LineWrite> writes;
+    gpio::MockChip chip(start_lines, clock, gpio::recorder(writes));
+    auto lines = std::make_unique<gpio::MockInputs>(1, clock);
+    gpio::MockInputs& input = *lines;
+    Result<Buttons> buttons = Buttons::start(printer, std::move(lines));
+    REQUIRE(buttons.ok());
+    PrintControl control;
+    PrintJob job{write_print("homing", {draw_stroke}), printer, true, {}};
+    job.control = &control;
+    bool begun = false;
+    job.begun = [&] { begun = true; };
+    job.before = [&](gpio::GpioChip&, gpio::Clock&, const StopSource& stop) {
+        CHECK(begun);
+        return home_for_a_second(stop, homed.asked, [&] {
+            homed.meanwhile = control.status();
+            disturb(control, input);
+        });
+    };
+    homed.report = print(job, chip, clock, nullptr, &*buttons);
+    homed.end = control.status();
+    homed.writes = writes.size();
+    CHECK(chip.levels() == 0);
+    return homed;
+}
+
+}  // namespace
+
+TEST_CASE("print 6, 9: an emergency was not heard while a print homes") {
+    const Homed by_line =
+        print_and_disturb([](PrintControl&, gpio::MockInputs& input) { input.set(0, true); });
+    const Homed by_command = print_and_disturb(
+        [](PrintControl& control, gpio::MockInputs&) { control.post(EmergencyStop{}); });
+    for (const Homed* homed : {&by_line, &by_command}) {
+        CHECK(homed->asked == 2);
+        CHECK(homed->meanwhile.message == "homing before the print");
+        CHECK(homed->meanwhile.layers == 1);
+        CHECK_FALSE(homed->meanwhile.is_position_known);
+        REQUIRE_FALSE(homed->report.ok());
+        CHECK(homed->report.error().status == ExitStatus::stopped);
+        CHECK(homed->report.error().message.find("emergency stop") != std::string::npos);
+        CHECK(homed->end.state == PrintState::failed);
+        CHECK(homed->writes == 1);  // the release
+    }
+}
+
+TEST_CASE("print 4, 6: a signal and a cancel stop a print that homes") {
+    const Homed by_signal =
+        print_and_disturb([](PrintControl&, gpio::MockInputs&) { std::raise(SIGTERM); });
+    const Homed by_command =
+        print_and_disturb([](PrintControl& control, gpio::MockInputs&) { control.post(Cancel{}); });
+    for (const Homed* homed : {&by_signal, &by_command}) {
+        CHECK(homed->asked == 1);
+        REQUIRE_FALSE(homed->report.ok());
+        CHECK(homed->report.error().status == ExitStatus::stopped);
+        CHECK(homed->report.error().message.find("before the path began") != std::string::npos);
+        CHECK(homed->writes == 1);
+    }
+    CHECK(by_command.report.error().message.find("cancelled") != std::string::npos);
+}
+
+TEST_CASE("print 6: what else is asked for while a print homes waits for its path") {
+    const Homed homed = print_and_disturb(
+        [](PrintControl& control, gpio::MockInputs&) { control.post(SetSpeedFactor{2}); });
+    CHECK(homed.asked == 0);
+    CHECK(homed.report.ok());
+    CHECK(homed.end.speed_factor == 2);
+}
+
+TEST_CASE("print 2: heaters were not refreshed before the path, and their keeper gave them up") {
+    config::Printer printer = starting_printer();
+    config::Heater bed = config::default_heater(config::heater_bed);
+    bed.sensor.kind = config::SensorKind::celsius;
+    bed.sensor.celsius_per_unit = 1;
+    printer.heaters[config::heater_bed] = bed;
+    std::atomic<int> reads{0};
+    std::vector<thermal::HeaterPort> ports;
+    ports.push_back({config::heater_bed, bed, std::make_unique<thermal::MockSensor>([&] {
+                         ++reads;
+                         return Result<double>(25.0);
+                     })});
+    Heating heating;
+    std::vector<thermal::Output> outputs;
+    outputs.push_back({thermal::LineOutput{0, thermal::SlowPwm(1)}, true});
+    heating.stage = std::make_unique<thermal::PowerStage>(std::move(outputs), nullptr);
+    heating.control =
+        std::make_unique<thermal::HeatControl>(std::move(ports), false, *heating.stage);
+    gpio::MonotonicClock clock;
+    gpio::MockChip chip(start_lines, clock, {});
+    PrintJob job{write_print("refreshed", {draw_stroke}), printer, false, {}};
+    int before = 0;
+    job.before = [&](gpio::GpioChip&, gpio::Clock&, const StopSource& stop) {
+        unsigned asked = 0;
+        const Status homed = home_for_a_second(stop, asked, [] {});
+        before = reads;
+        return homed;
+    };
+    CHECK(print(job, chip, clock, &heating).ok());
+    CHECK(before >= 5);
 }
