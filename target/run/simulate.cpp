@@ -226,25 +226,15 @@ struct Heed {
     Diagnostics notes;
 };
 
-// What a print would refuse is worth knowing, but no reason not to simulate: the motions are made cold then.
-Heed heed(const Inspection& inspection, const SimulationJob& job) {
+// A simulation has nobody who would tell it to go on, and passes over pauses; whatever else a print refuses it refuses too.
+Result<Heed> heed(const Inspection& inspection, const SimulationJob& job) {
     Heed result;
-    const bool asked = !inspection.demands.hottest.empty();
-    const auto possible = [&](bool no_heat) {
-        result.notes.clear();
-        const Status checked =
-            check_demands(inspection, job.printer, no_heat, result.notes, lives(job));
-        if (checked) return true;
-        result.notes.push_back(checked.error());
-        result.notes.back().severity = Severity::warning;
-        return checked.error().status == ExitStatus::unsupported;
-    };
-    result.heats = asked && !job.no_heat && possible(false);
-    if (result.heats) return result;
-    Diagnostics why;
-    if (asked && !job.no_heat) why.push_back(result.notes.back());
-    (void)possible(true);
-    result.notes.insert(result.notes.end(), why.begin(), why.end());
+    const Status possible =
+        check_demands(inspection, job.printer, job.no_heat, result.notes, lives(job));
+    if (!possible && possible.error().status != ExitStatus::unsupported) return possible.error();
+    if (!possible) result.notes.push_back(possible.error());
+    if (!possible) result.notes.back().severity = Severity::warning;
+    result.heats = !job.no_heat && !inspection.demands.hottest.empty();
     return result;
 }
 
@@ -266,9 +256,10 @@ Result<SimulationReport> simulate(const SimulationJob& asked) {
     const Result<Inspection> inspection = inspect(job.file, job.printer);
     if (!inspection) return inspection.error();
     const double diameter_mm = inspection->filament_diameter_mm;
-    Heed heeded = heed(*inspection, job);
-    OrderQueue orders({heeded.heats, lives(job)});
-    OrderQueue* wanted = heeded.heats || lives(job) ? &orders : nullptr;
+    Result<Heed> heeded = heed(*inspection, job);
+    if (!heeded) return heeded.error();
+    OrderQueue orders({heeded->heats, lives(job)});
+    OrderQueue* wanted = heeded->heats || lives(job) ? &orders : nullptr;
     Result<EventStream> stream =
         EventStream::open(job.file, job.printer, diameter_mm, wanted, first_layer);
     if (!stream) return stream.error();
@@ -276,12 +267,12 @@ Result<SimulationReport> simulate(const SimulationJob& asked) {
     if (!reader) return reader.error();
     Simulation simulation(job, *inspection, std::move(*stream),
                           FilePath(std::move(*reader), job.printer.start_mm, diameter_mm), wanted,
-                          heeded.heats);
+                          heeded->heats);
     if (const Status run = simulation.run(trace ? &*trace : nullptr); !run) return run.error();
     if (trace)
         if (const Status written = trace->commit(); !written) return written.error();
     SimulationReport report = simulation.report();
-    report.notes = std::move(heeded.notes);
+    report.notes = std::move(heeded->notes);
     return report;
 }
 
