@@ -275,12 +275,16 @@ Status print(const Arguments& arguments, const config::Printer& printer) {
         };
     if (!arguments.dry_run) job.journal = run::journal_path(printer, arguments.lyr_path);
     job.control = &control;
-    job.checked = [&] { show(program, server->notes()); };
+    job.checked = [&](const Diagnostics& notes) {
+        show(program, server->notes());
+        show(program, notes);
+    };
     job.begun = [&] { server->start(); };
     const Result<run::PrintReport> report = arguments.dry_run ? run::dry_run(job) : run::print(job);
     line.clear();
     if (!report) return report.error();
-    show(program, report->warnings);
+    show(program, Diagnostics(report->warnings.begin() + static_cast<std::ptrdiff_t>(report->told),
+                              report->warnings.end()));
     return tell(arguments.lyr_path + (arguments.dry_run ? " tried on \"" : " printed on \"") +
                 printer.name + "\"\n" + run::text_of(*report));
 }

@@ -236,10 +236,27 @@ struct Prepared {
     PrintFile file;
     Inspection inspection;
     Diagnostics notes;
+    std::optional<Journal> journal;  // none: none is asked for, or cannot be had, which is a note
+    FileIdentity identity;
 };
 
 bool can_resume(const PrintJob& job) {
     return job.control || job.printer.inputs[config::input_pause];
+}
+
+// Its file is read to its end, which heaters must not wait for.
+void open_journal(const PrintJob& job, Prepared& prepared) {
+    if (job.journal.empty()) return;
+    const Result<FileIdentity> file = identity_of(job.file);
+    Result<Journal> journal = Journal::open(job.journal);
+    if (file && journal) {
+        prepared.identity = *file;
+        prepared.journal.emplace(std::move(*journal));
+        return;
+    }
+    prepared.notes.push_back(file ? journal.error() : file.error());
+    prepared.notes.back().severity = Severity::warning;
+    prepared.notes.back().message += "; this print cannot be resumed after a loss of power";
 }
 
 Result<Prepared> prepare(const PrintJob& job) {
@@ -247,10 +264,15 @@ Result<Prepared> prepare(const PrintJob& job) {
     if (!file) return file.error();
     Result<Inspection> inspection = inspect(*file, job.printer);
     if (!inspection) return inspection.error();
-    Prepared prepared{std::move(*file), std::move(*inspection), {}};
+    Prepared prepared{std::move(*file), std::move(*inspection), {}, {}, {}};
     const Status possible = check_demands(prepared.inspection, job.printer, job.no_heat,
                                           prepared.notes, can_resume(job));
     if (!possible) return possible.error();
+    open_journal(job, prepared);
+    if (const Status same = prepared.file.check(); !same) return same.error();
+    lock_memory(prepared.notes);
+    // As the real-time thread will.
+    std::thread([&] { take_precedence(prepared.notes); }).join();
     return prepared;
 }
 
@@ -297,22 +319,6 @@ void report_on(const Executor& executor, const gpio::TracingClock& clock, PrintR
     report.lateness = clock.histogram();
 }
 
-// None: no journal is asked for, or cannot have one, which is a warning.
-std::unique_ptr<JournalWriter> journal_for(const PrintJob& job, FileIdentity& identity,
-                                           Diagnostics& warnings) {
-    if (job.journal.empty()) return nullptr;
-    const Result<FileIdentity> file = identity_of(job.file);
-    Result<Journal> journal = Journal::open(job.journal);
-    if (file && journal) {
-        identity = *file;
-        return std::make_unique<JournalWriter>(std::move(*journal));
-    }
-    warnings.push_back(file ? journal.error() : file.error());
-    warnings.back().severity = Severity::warning;
-    warnings.back().message += "; this print cannot be resumed after a loss of power";
-    return nullptr;
-}
-
 // All that a print has beside its job, until its threads have ended.
 struct Running {
     Running(const PrintJob& job, const Inspection& inspection, gpio::GpioChip& chip,
@@ -338,9 +344,10 @@ struct Running {
 };
 
 // The real-time thread.
-void drive(Running& running, gpio::GpioChip& chip, Diagnostics& warnings) {
+void drive(Running& running, gpio::GpioChip& chip) {
     Shared& shared = running.shared;
-    take_precedence(warnings);
+    Diagnostics told_before;
+    take_precedence(told_before);
     while (!shared.filled.load() && !shared.stop_requests.load())
         std::this_thread::sleep_for(executor_nap);
     running.outcome.executed = drain(running.executor, running.traced, shared);
@@ -356,7 +363,7 @@ struct Around {
     std::optional<Watchdog> watchdog{};
 };
 
-Result<PrintReport> run(const PrintJob& job, const Prepared& prepared, gpio::GpioChip& chip,
+Result<PrintReport> run(const PrintJob& job, Prepared& prepared, gpio::GpioChip& chip,
                         gpio::Clock& clock, Around around) {
     Heating* const heating = around.heating;
     const Inspection& inspection = prepared.inspection;
@@ -373,7 +380,7 @@ Result<PrintReport> run(const PrintJob& job, const Prepared& prepared, gpio::Gpi
     const StopSignals signals;
     PrintReport report;
     report.warnings = prepared.notes;
-    lock_memory(report.warnings);
+    report.told = report.warnings.size();
     if (job.begun) job.begun();
     // At once: the keeper of the heaters' lines expects to hear of them.
     Tending tending(heating, shared);
@@ -386,11 +393,11 @@ Result<PrintReport> run(const PrintJob& job, const Prepared& prepared, gpio::Gpi
         life.end(opened, false);
         return opened.error();
     }
-    FileIdentity identity;
-    const std::unique_ptr<JournalWriter> journal = journal_for(job, identity, report.warnings);
-    life.keep_journal(journal.get(), identity);
+    std::optional<JournalWriter> journal;
+    if (prepared.journal) journal.emplace(std::move(*prepared.journal));
+    life.keep_journal(journal ? &*journal : nullptr, prepared.identity);
     std::thread planner([&] { running.outcome.planned = fill(prepared.file, *stream, shared); });
-    std::thread edges([&] { drive(running, chip, report.warnings); });
+    std::thread edges([&] { drive(running, chip); });
     watch(watched, job, inspection);
     edges.join();
     planner.join();
@@ -415,21 +422,21 @@ Result<PrintReport> run(const PrintJob& job, const Prepared& prepared, gpio::Gpi
 Result<PrintReport> print(const PrintJob& job, gpio::GpioChip& chip, gpio::Clock& clock,
                           Heating* heating, Buttons* buttons) {
     keep_stacks_small();
-    const Result<Prepared> prepared = prepare(job);
+    Result<Prepared> prepared = prepare(job);
     if (!prepared) return prepared.error();
     if (!heating && !job.no_heat && !prepared->inspection.demands.hottest.empty())
         return Diagnostic{Severity::error, ExitStatus::internal, "no heaters were opened", {}};
-    if (job.checked) job.checked();
+    if (job.checked) job.checked(prepared->notes);
     return run(job, *prepared, chip, clock, {heating, buttons});
 }
 
 Result<PrintReport> print(const PrintJob& job) {
     keep_stacks_small();
-    const Result<Prepared> prepared = prepare(job);
+    Result<Prepared> prepared = prepare(job);
     if (!prepared) return prepared.error();
     const Result<std::vector<gpio::LineRequest>> requests = line_requests(job.printer);
     if (!requests) return requests.error();
-    if (job.checked) job.checked();
+    if (job.checked) job.checked(prepared->notes);
     // From here on lines are held: one that comes between homing and printing must not be lost, nor end the program.
     const StopSignals signals;
     const Result<std::unique_ptr<gpio::GpioChip>> chip = gpio::open_gpiod_chip(*requests);

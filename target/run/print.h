@@ -44,8 +44,8 @@ struct PrintJob {
     std::function<Status(gpio::GpioChip&, gpio::Clock&, const StopSource&)> before{};
     PrintControl* control = nullptr;  // none: only signals and buttons do something
     // Called once, when the file and the printer are found right: no line is held yet, and signals still end the program.
-    // What is said later may wait for a terminal with the motors on.
-    std::function<void()> checked{};
+    // What is said later may wait for a terminal with the motors on: so it gets all that is to be said of what is to come.
+    std::function<void(const Diagnostics& notes)> checked{};
     // Called once, when all lines are held, and before `before`; from here on threads may be started.
     std::function<void()> begun{};
     std::string journal{};  // its path; empty: none
@@ -63,6 +63,7 @@ struct PrintReport {
     // How late waits ended; the buckets are those of TracingClock.
     std::array<std::uint64_t, gpio::TracingClock::buckets> lateness{};
     Diagnostics warnings;
+    std::size_t told = 0;  // so many of the warnings, the first, were known before anything moved
 };
 
 // On the lines that the printer's file names.

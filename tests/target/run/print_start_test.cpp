@@ -58,7 +58,7 @@ TEST_CASE("print 1: a file that was replaced after its inspection was printed un
         std::vector<gpio::LineWrite> writes;
         gpio::MockChip chip(start_lines, clock, gpio::recorder(writes));
         PrintJob job{file, starting_printer(), true, {}};
-        job.checked = [&] {
+        job.checked = [&](const Diagnostics&) {
             in_place ? overwrite(file, other) : std::filesystem::rename(other, file);
         };
         const Result<PrintReport> refused = print(job, chip, clock);
@@ -218,4 +218,46 @@ TEST_CASE("print 2: heaters were not refreshed before the path, and their keeper
     };
     CHECK(print(job, chip, clock, &heating).ok());
     CHECK(before >= 5);
+}
+
+TEST_CASE("print: what the print warns of was said after it, and not at all if it was stopped") {
+    gpio::MonotonicClock clock;
+    gpio::MockChip chip(start_lines, clock, {});
+    PrintJob job{write_print("warned", {draw_stroke}), starting_printer(), true, {}};
+    job.journal = "/nonexistent/journal";
+    Diagnostics told;
+    job.checked = [&](const Diagnostics& notes) {
+        told = notes;
+        CHECK(chip.levels() == 0);
+    };
+    const Result<PrintReport> report = print(job, chip, clock);
+    REQUIRE(report.ok());
+    REQUIRE_FALSE(told.empty());
+    CHECK(told[0].message.find("cannot be resumed") != std::string::npos);
+    CHECK(report->told == told.size());
+    CHECK(report->warnings.size() == told.size());
+}
+
+TEST_CASE("print 7: a print that does not begin leaves no journal, and the one before as it was") {
+    const std::string file = write_print("not_begun", {draw_stroke});
+    gpio::MonotonicClock clock;
+    gpio::MockChip chip(start_lines, clock, {});
+    PrintJob job{file, starting_printer(), true, {}};
+    job.journal = file + ".journal";
+    std::filesystem::remove(job.journal);
+    job.before = [](gpio::GpioChip&, gpio::Clock&, const StopSource&) -> Status {
+        return Diagnostic{Severity::error, ExitStatus::machine, "no endstop", {}};
+    };
+    CHECK_FALSE(print(job, chip, clock).ok());
+    CHECK_FALSE(std::filesystem::exists(job.journal));
+    {
+        Result<Journal> journal = Journal::open(job.journal);
+        REQUIRE(journal.ok());
+        REQUIRE(journal->write({*identity_of(file), 3, 6, 0, {}, {}}).ok());
+    }
+    CHECK_FALSE(print(job, chip, clock).ok());
+    const auto kept = read_journal(job.journal);
+    REQUIRE(kept.ok());
+    REQUIRE(kept->has_value());
+    CHECK((*kept)->layer == 3);
 }
