@@ -1,6 +1,7 @@
 #include "target/home/job.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/constants.h"
@@ -162,8 +163,18 @@ std::string text_of(const Report& report) {
         text += formatted(" in %.1f s; two approaches agree within %.3f mm\n", report.time_s,
                           report.repeat_mm);
     }
-    return text + formatted("  the head is at x %.3f, y %.3f, z %.3f mm\n", report.head.x,
-                            report.head.y, report.head.z);
+    text += "  the head is at";
+    const std::array<double, 3> at_mm{report.head.x, report.head.y, report.head.z};
+    const char* gap = " ";
+    for (std::size_t i = 0; i < at_mm.size(); ++i) {
+        if (report.homed.any() && !report.homed[i]) continue;
+        text += gap + std::string(config::axis_names[i]) + formatted(" %.3f", at_mm[i]);
+        gap = ", ";
+    }
+    text += " mm";
+    if (report.homed.none()) text += ", if it was in the middle of its ranges";
+    if (report.homed.any() && !report.homed.all()) text += "; where it is else was not found";
+    return text + '\n';
 }
 
 }  // namespace lyr::home

@@ -162,6 +162,9 @@ TEST_CASE(
     check_failure(folder.run("lyrrun a.lyr --tune tool=210 --simulate"), 2, "without a print");
     check_failure(folder.run("lyrrun --tune chamber=40 --simulate"), 7, "no heater.chamber");
     check_failure(folder.run("lyrrun --tune tool=274 --simulate"), 7, "range_c");
+    // It took two hours to find that out.
+    check_failure(folder.run("lyrrun --tune tool=5 --simulate"), 7,
+                  "must cool down below its target");
     check_failure(folder.run("lyrrun --tune bed=60 --printer p.toml"), 7,
                   "heater.tool.sensor.file");
     check_failure(folder.run("echo 10 no_power bed | lyrrun --tune bed=60 --simulate --faults -"),
