@@ -118,6 +118,15 @@ Result<Inspection> inspect(const PrintFile& print, const config::Printer& printe
                           "the file uses tool " + std::to_string(inspection.demands.highest_tool) +
                               "; this printer has tool 0 only",
                           {.file = path}};
+    if (const auto layer = inspection.demands.still_layer) {
+        Diagnostic still{Severity::error,
+                         ExitStatus::input,
+                         "a path has a speed of 0 mm/s: a .lyr file states speeds in steps of 0.01 "
+                         "mm/s, and what it was made from asks for less",
+                         {.file = path}};
+        still.where.layer = static_cast<int>(*layer);
+        return still;
+    }
     inspection.low_mm = all.low_mm;
     inspection.high_mm = all.high_mm;
     // Written to meanwhile, it has been seen in part.

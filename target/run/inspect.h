@@ -4,7 +4,8 @@
 // Contract
 //  1. Every checksum of the file has been verified when this succeeds.
 //  2. A path that leaves the range of an axis anywhere, between the ends of an arc too, is an error
-//     (status machine) with layer and position; a second tool is one of status unsupported.
+//     (status machine) with layer and position; a second tool is one of status unsupported; a path
+//     without speed is one of status input.
 //  3. The result says what the file asks of the machine.
 
 #pragma once

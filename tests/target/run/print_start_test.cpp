@@ -261,3 +261,16 @@ TEST_CASE("print 7: a print that does not begin leaves no journal, and the one b
     REQUIRE(kept->has_value());
     CHECK((*kept)->layer == 3);
 }
+
+TEST_CASE("inspect 2: a path too slow for the format began to print, and ended in a riddle") {
+    const std::string file = write_print("still", {draw_stroke, [](const Pen& pen) {
+                                                       pen.path(0.0001);
+                                                       pen.travel(0, 0);
+                                                       pen.line(4, 0);
+                                                   }});
+    const Result<Inspection> refused = inspect(file, starting_printer());
+    REQUIRE_FALSE(refused.ok());
+    CHECK(refused.error().status == ExitStatus::input);
+    CHECK(refused.error().where.layer == 2);
+    CHECK(refused.error().message.find("steps of 0.01 mm/s") != std::string::npos);
+}
