@@ -59,7 +59,4 @@ std::variant<Request, Refusal> read_request(std::string_view line);
 std::string done_line(const std::string& id);
 std::string refusal_line(const Refusal& refusal);
 
-// In quotes. The text is UTF-8; what comes from elsewhere goes through escaped() first.
-std::string json_text(std::string_view text);
-
 }  // namespace lyr::control

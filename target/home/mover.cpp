@@ -1,7 +1,6 @@
 #include "target/home/mover.h"
 
 #include <algorithm>
-#include <bit>
 #include <chrono>
 #include <cmath>
 #include <thread>
@@ -42,11 +41,7 @@ void drain(run::MotorSteps& generator, run::PulseSchedule& schedule,
         count = generator.next(steps);
         single.clear();
         for (const motion::StepEvent& step : std::span(steps).first(count))
-            for (unsigned motors = step.motors; motors; motors &= motors - 1) {
-                const int motor = std::countr_zero(motors);
-                single.push_back({step.time_ns, static_cast<std::uint8_t>(motor),
-                                  (step.positive >> motor & 1) != 0});
-            }
+            run::append_steps(step, single);
         schedule.append(single, events);
     }
 }

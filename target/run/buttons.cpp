@@ -4,6 +4,7 @@
 #include <array>
 
 #include "target/gpio/gpiod_inputs.h"
+#include "target/run/line_layout.h"
 
 namespace lyr::run {
 
@@ -12,9 +13,7 @@ std::vector<gpio::InputRequest> input_requests(const config::Printer& printer) {
     for (std::size_t i = 0; i < printer.inputs.size(); ++i) {
         const std::optional<config::Pin>& pin = printer.inputs[i];
         if (!pin) continue;
-        requests.push_back({{"input." + std::string(config::input_names[i]), pin->chip, pin->line,
-                             pin->active_low},
-                            static_cast<gpio::Pull>(pin->pull)});
+        requests.push_back(input_request("input." + std::string(config::input_names[i]), *pin));
     }
     return requests;
 }
