@@ -270,18 +270,21 @@ Status print(const Arguments& arguments, const config::Printer& printer) {
     job.resumption = std::move(*resumption);
     job.is_lifted = home::homed_before_print(printer, arguments.resume).any();
     if (job.is_lifted)
-        job.before = [&job](gpio::GpioChip& chip, gpio::Clock& clock) {
-            const run::StopSignals signals;
-            return home::home_before_print(job.printer, job.resumption, chip, clock, signals);
+        job.before = [&job](gpio::GpioChip& chip, gpio::Clock& clock, const run::StopSource& stop) {
+            return home::home_before_print(job.printer, job.resumption, chip, clock, stop);
         };
     if (!arguments.dry_run) job.journal = run::journal_path(printer, arguments.lyr_path);
     job.control = &control;
-    job.checked = [&] { show(program, server->notes()); };
+    job.checked = [&](const Diagnostics& notes) {
+        show(program, server->notes());
+        show(program, notes);
+    };
     job.begun = [&] { server->start(); };
     const Result<run::PrintReport> report = arguments.dry_run ? run::dry_run(job) : run::print(job);
     line.clear();
     if (!report) return report.error();
-    show(program, report->warnings);
+    show(program, Diagnostics(report->warnings.begin() + static_cast<std::ptrdiff_t>(report->told),
+                              report->warnings.end()));
     return tell(arguments.lyr_path + (arguments.dry_run ? " tried on \"" : " printed on \"") +
                 printer.name + "\"\n" + run::text_of(*report));
 }

@@ -20,9 +20,10 @@ Client::~Client() {
     ::close(socket_);
 }
 
-void Client::receive() {
+void Client::receive(Clock::time_point now) {
     std::array<char, most_line_bytes> bytes;
     const ssize_t count = ::recv(socket_, bytes.data(), bytes.size(), 0);
+    if (count > 0) heard_ = now;
     if (count > 0) return session_.receive({bytes.data(), static_cast<std::size_t>(count)});
     if (count == 0)
         ended_ = true;
@@ -45,7 +46,7 @@ void Client::send(Clock::time_point now) {
 
 void Client::serve(Dispatcher& dispatcher, Clock::time_point now) {
     if (!has_unsent()) moved_ = now;
-    if (wants_more()) receive();
+    if (wants_more()) receive(now);
     // Lines that had to wait for room go on as soon as there is some: nothing else may come that would call this.
     for (bool goes_on = true; goes_on;) {
         goes_on = false;

@@ -17,7 +17,7 @@ public:
     using Clock = Subscription::Clock;
 
     // The socket is its own from here on.
-    Client(int socket, Clock::time_point now) : socket_(socket), moved_(now) {}
+    Client(int socket, Clock::time_point now) : socket_(socket), moved_(now), heard_(now) {}
     Client(const Client&) = delete;
     Client& operator=(const Client&) = delete;
     ~Client();
@@ -26,6 +26,8 @@ public:
     bool wants_more() const { return !ended_ && session_.wants_more(); }
     bool has_unsent() const { return !session_.unsent().empty(); }
     const Subscription& subscription() const { return subscription_; }
+    // When it last sent something.
+    Clock::time_point heard() const { return heard_; }
 
     void answer(std::string_view line) { session_.answer(line); }
     void serve(Dispatcher& dispatcher, Clock::time_point now);
@@ -34,14 +36,14 @@ public:
     bool is_over(Clock::time_point now, Clock::duration stuck_time) const;
 
 private:
-    void receive();
+    void receive(Clock::time_point now);
     void send(Clock::time_point now);
 
     int socket_;
     Session session_;
     Subscription subscription_;
     bool ended_ = false, gone_ = false;
-    Clock::time_point moved_;  // when it last took something, or had nothing to take
+    Clock::time_point moved_, heard_;  // moved: when it last took something, or had nothing to take
 };
 
 }  // namespace lyr::control

@@ -44,8 +44,8 @@ std::string Dispatcher::greeting() const {
     std::error_code error;
     const auto path = std::filesystem::absolute(print_.status().file, error);
     return "{\"greeting\":\"lyrrun\",\"protocol\":" + std::to_string(protocol_version) +
-           ",\"printer\":" + json_text(escaped(printer_.name)) +
-           ",\"file\":" + json_text(escaped(path.string())) + '}';
+           ",\"printer\":" + in_json(escaped(printer_.name)) +
+           ",\"file\":" + in_json(escaped(path.string())) + '}';
 }
 
 std::string Dispatcher::status_event() const {
@@ -137,9 +137,9 @@ std::optional<Refusal> Dispatcher::objection(const run::Command& command, PrintS
 std::string json_of(const run::PrintStatus& status, const config::Printer& printer) {
     std::string text = "{\"state\":\"";
     text += run::print_state_names[static_cast<std::size_t>(status.state)];
-    text += "\",\"message\":" + json_text(escaped(status.message));
-    text += ",\"file\":" + json_text(escaped(status.file));
-    text += ",\"printer\":" + json_text(escaped(printer.name));
+    text += "\",\"message\":" + in_json(escaped(status.message));
+    text += ",\"file\":" + in_json(escaped(status.file));
+    text += ",\"printer\":" + in_json(escaped(printer.name));
     text += ",\"layer\":" + std::to_string(status.layer);
     text += ",\"layers\":" + std::to_string(status.layers);
     const auto& at = status.position_mm;

@@ -48,7 +48,7 @@ public:
         return take(static_cast<double>(value), std::to_string(value));
     }
     bool number_float(double value, const std::string&) override { return take(value, {}); }
-    bool string(std::string& value) override { return take(value, json_text(value)); }
+    bool string(std::string& value) override { return take(value, in_json(value)); }
     bool binary(nlohmann::json::binary_t&) override { return false; }
     bool parse_error(std::size_t position, const std::string&,
                      const nlohmann::json::exception&) override {
@@ -246,21 +246,7 @@ std::string done_line(const std::string& id) {
 
 std::string refusal_line(const Refusal& refusal) {
     return "{\"id\":" + refusal.id + ",\"ok\":false,\"error\":{\"code\":\"" +
-           std::string(name_of(refusal.code)) + "\",\"message\":" + json_text(refusal.message) +
-           "}}";
-}
-
-std::string json_text(std::string_view text) {
-    std::string out = "\"";
-    for (const char c : text) {
-        if (static_cast<unsigned char>(c) < 0x20) {
-            out += formatted("\\u%04x", static_cast<unsigned>(c));
-            continue;
-        }
-        if (c == '"' || c == '\\') out += '\\';
-        out += c;
-    }
-    return out + '"';
+           std::string(name_of(refusal.code)) + "\",\"message\":" + in_json(refusal.message) + "}}";
 }
 
 }  // namespace lyr::control

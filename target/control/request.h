@@ -24,7 +24,7 @@ enum class ErrorCode : std::uint8_t {
     unknown_command,
     bad_value,  // a member is not of its kind or out of its range
     line_too_long,
-    too_many_clients,  // instead of a greeting; then the connection ends
+    too_many_clients,  // another one needs the place; then the connection ends
     wrong_state,       // the print cannot do this now
     no_such_heater,    // ... that this printer has
     busy,              // too many commands wait already
@@ -58,8 +58,5 @@ std::variant<Request, Refusal> read_request(std::string_view line);
 // The answers.
 std::string done_line(const std::string& id);
 std::string refusal_line(const Refusal& refusal);
-
-// In quotes. The text is UTF-8; what comes from elsewhere goes through escaped() first.
-std::string json_text(std::string_view text);
 
 }  // namespace lyr::control

@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "target/control/client.h"
@@ -62,6 +63,7 @@ private:
     std::vector<pollfd> awaited() const;
     int sleep_ms(Clock::time_point now) const;
     void accept_waiting(Clock::time_point now);
+    void make_room(Clock::time_point now);
     void dismiss(Clock::time_point now) {
         std::erase_if(clients_,
                       [&](const auto& client) { return client->is_over(now, stuck_time); });
@@ -97,6 +99,20 @@ int Server::Work::sleep_ms(Clock::time_point now) const {
     return static_cast<int>(std::max<std::int64_t>(0, left));
 }
 
+void Server::Work::make_room(Clock::time_point now) {
+    const auto rank = [](const std::unique_ptr<Client>& client) {
+        return std::pair(client->subscription().interval.has_value(), client->heard());
+    };
+    const auto silent =
+        std::min_element(clients_.begin(), clients_.end(),
+                         [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
+    (*silent)->answer(
+        refusal_line({"null", ErrorCode::too_many_clients,
+                      "all places are taken, and this client was silent for longest"}));
+    (*silent)->serve(dispatcher_, now);
+    clients_.erase(silent);
+}
+
 void Server::Work::accept_waiting(Clock::time_point now) {
     for (;;) {
         const int socket = listener_.accept();
@@ -110,12 +126,10 @@ void Server::Work::accept_waiting(Clock::time_point now) {
             for (const auto& other : clients_) other->serve(dispatcher_, now);
             dismiss(now);
         }
-        const bool has_room = clients_.size() < most_clients;
-        client->answer(has_room ? dispatcher_.greeting()
-                                : refusal_line({"null", ErrorCode::too_many_clients,
-                                                "all places are taken; try again later"}));
+        if (clients_.size() >= most_clients) make_room(now);
+        client->answer(dispatcher_.greeting());
         client->serve(dispatcher_, now);
-        if (has_room) clients_.push_back(std::move(client));
+        clients_.push_back(std::move(client));
     }
 }
 

@@ -3,7 +3,9 @@
 // Contract
 //  1. Nothing that clients do holds the print up: they are served by one thread of ordinary priority, which never waits
 //     for any of them.
-//  2. What it holds is bounded: most_clients, each with what session.h says. One more gets a refusal and is closed.
+//  2. What it holds is bounded: most_clients, each with what session.h says. One more takes the place of
+//     the one that has sent nothing for the longest, of those without a subscription if there are any: the one that comes
+//     may want to stop the print.
 //  3. A client that takes nothing of what waits for it for stuck_s is closed. One that has only stopped sending gets
 //     all its answers first.
 //  4. A client that has subscribed is told the status in its interval, once more at the end, and never a second one

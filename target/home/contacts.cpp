@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/constants.h"
+#include "target/run/line_layout.h"
 
 namespace lyr::home {
 namespace {
@@ -11,20 +12,6 @@ const std::optional<config::Pin>& pin_of(const config::Printer& printer, std::si
     static const std::optional<config::Pin> none;
     if (contact < printer.endstops.size()) return printer.endstops[contact].input;
     return printer.probe ? printer.probe->input : none;
-}
-
-gpio::Pull pull_of(config::Pull pull) {
-    switch (pull) {
-        case config::Pull::as_is:
-            return gpio::Pull::as_is;
-        case config::Pull::up:
-            return gpio::Pull::up;
-        case config::Pull::down:
-            return gpio::Pull::down;
-        case config::Pull::none:
-            return gpio::Pull::none;
-    }
-    return gpio::Pull::as_is;
 }
 
 }  // namespace
@@ -44,7 +31,7 @@ std::vector<gpio::InputRequest> contact_requests(const config::Printer& printer)
             i == config::contact_probe
                 ? "probe.input"
                 : "axis." + std::string(config::contact_names[i]) + ".endstop";
-        requests.push_back({{purpose, pin->chip, pin->line, pin->active_low}, pull_of(pin->pull)});
+        requests.push_back(run::input_request(purpose, *pin));
     }
     return requests;
 }

@@ -1,6 +1,7 @@
 #include "target/home/job.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/constants.h"
@@ -9,6 +10,7 @@
 #include "target/gpio/gpiod_inputs.h"
 #include "target/home/simulated_machine.h"
 #include "target/moves/machine.h"
+#include "target/run/buttons.h"
 #include "target/run/real_time.h"
 
 namespace lyr::home {
@@ -42,12 +44,19 @@ Status on_board(const config::Printer& printer, Diagnostics& warnings, const Wor
     if (!requests) return requests.error();
     const Result<std::unique_ptr<gpio::InputLines>> inputs = open_inputs(printer);
     if (!inputs) return inputs.error();
+    Result<std::optional<run::Buttons>> buttons = run::open_buttons(printer);
+    if (!buttons) return buttons.error();
     const Result<std::unique_ptr<gpio::GpioChip>> chip = gpio::open_gpiod_chip(*requests);
     if (!chip) return chip.error();
     const run::StopSignals signals;
     run::lock_memory(warnings);
     gpio::MonotonicClock clock;
-    Mover mover(printer, **chip, clock, inputs->get(), &signals);
+    const auto stop = [&]() -> unsigned {
+        constexpr unsigned at_once = 2;
+        if (*buttons && run::asks_for_emergency(**buttons, clock.now_ns())) return at_once;
+        return signals.wait_ms(0) ? 1 : 0;
+    };
+    Mover mover(printer, **chip, clock, inputs->get(), stop);
     Status done = work(mover);
     Status released = (*chip)->release();
     return done ? released : done;
@@ -77,7 +86,7 @@ Status with_machine(const Job& job, Diagnostics& warnings, const Work& work) {
     if (!job.simulate) return on_board(job.printer, warnings, work);
     SimulatedMachine machine(job.printer, job.faults);
     gpio::InputLines* inputs = contacts_of(job.printer).any() ? &machine.inputs() : nullptr;
-    Mover mover(job.printer, machine.chip(), machine.clock(), inputs, nullptr);
+    Mover mover(job.printer, machine.chip(), machine.clock(), inputs, {});
     return work(mover);
 }
 
@@ -118,10 +127,10 @@ AxisSet homed_before_print(const config::Printer& printer, bool resumes) {
 
 Status home_before_print(const config::Printer& printer,
                          const std::optional<run::Resumption>& resumption, gpio::GpioChip& chip,
-                         gpio::Clock& clock, const run::StopSignals& signals) {
+                         gpio::Clock& clock, const run::StopSource& stop) {
     const Result<std::unique_ptr<gpio::InputLines>> inputs = open_inputs(printer);
     if (!inputs) return inputs.error();
-    Mover mover(printer, chip, clock, inputs->get(), &signals);
+    Mover mover(printer, chip, clock, inputs->get(), stop);
     return home_before_print(mover, printer, resumption);
 }
 
@@ -155,8 +164,18 @@ std::string text_of(const Report& report) {
         text += formatted(" in %.1f s; two approaches agree within %.3f mm\n", report.time_s,
                           report.repeat_mm);
     }
-    return text + formatted("  the head is at x %.3f, y %.3f, z %.3f mm\n", report.head.x,
-                            report.head.y, report.head.z);
+    text += "  the head is at";
+    const std::array<double, 3> at_mm{report.head.x, report.head.y, report.head.z};
+    const char* gap = " ";
+    for (std::size_t i = 0; i < at_mm.size(); ++i) {
+        if (report.homed.any() && !report.homed[i]) continue;
+        text += gap + std::string(config::axis_names[i]) + formatted(" %.3f", at_mm[i]);
+        gap = ", ";
+    }
+    text += " mm";
+    if (report.homed.none()) text += ", if it was in the middle of its ranges";
+    if (report.homed.any() && !report.homed.all()) text += "; where it is else was not found";
+    return text + '\n';
 }
 
 }  // namespace lyr::home

@@ -35,7 +35,7 @@ struct Report {
     Diagnostics warnings{};
 };
 
-// What is done on a machine that is set up; `signals` as for Mover.
+// What is done on a machine that is set up; an emergency line and SIGINT stop it.
 using Work = std::function<Status(Mover& mover)>;
 Status with_machine(const Job& job, Diagnostics& warnings, const Work& work);
 
@@ -47,7 +47,7 @@ Result<Report> home(const Job& job, AxisSet axes, const std::optional<motion::Po
 AxisSet homed_before_print(const config::Printer& printer, bool resumes);
 Status home_before_print(const config::Printer& printer,
                          const std::optional<run::Resumption>& resumption, gpio::GpioChip& chip,
-                         gpio::Clock& clock, const run::StopSignals& signals);
+                         gpio::Clock& clock, const run::StopSource& stop);
 Status home_before_print(Mover& mover, const config::Printer& printer,
                          const std::optional<run::Resumption>& resumption);
 

@@ -1,7 +1,7 @@
 #include "target/home/mover.h"
 
 #include <algorithm>
-#include <bit>
+#include <chrono>
 #include <cmath>
 #include <thread>
 
@@ -43,11 +43,7 @@ void drain(run::MotorSteps& generator, run::PulseSchedule& schedule,
         count = generator.next(steps);
         single.clear();
         for (const motion::StepEvent& step : std::span(steps).first(count))
-            for (unsigned motors = step.motors; motors; motors &= motors - 1) {
-                const int motor = std::countr_zero(motors);
-                single.push_back({step.time_ns, static_cast<std::uint8_t>(motor),
-                                  (step.positive >> motor & 1) != 0});
-            }
+            run::append_steps(step, single);
         schedule.append(single, events);
     }
 }
@@ -88,6 +84,10 @@ std::int64_t braking_ns(const config::Printer& machine, std::span<const motion::
     return std::llround(2 * slowest_s * ns_per_s);
 }
 
+Diagnostic stopped() {
+    return {Severity::error, ExitStatus::stopped, "stopped on request", {}};
+}
+
 motion::StepCounts difference(motion::StepCounts counts, const motion::StepCounts& before) {
     for (std::size_t i = 0; i < counts.size(); ++i) counts[i] -= before[i];
     return counts;
@@ -96,8 +96,12 @@ motion::StepCounts difference(motion::StepCounts counts, const motion::StepCount
 }  // namespace
 
 Mover::Mover(const config::Printer& printer, gpio::GpioChip& chip, gpio::Clock& clock,
-             gpio::InputLines* inputs, const run::StopSignals* signals)
-    : chip_(chip), clock_(clock), tally_(chip, clock), signals_(signals), cpu_(printer.timing.cpu) {
+             gpio::InputLines* inputs, run::StopSource stop)
+    : chip_(chip),
+      clock_(clock),
+      tally_(chip, clock),
+      stop_(std::move(stop)),
+      cpu_(printer.timing.cpu) {
     if (inputs) watch_.emplace(*inputs, printer);
 }
 
@@ -110,22 +114,29 @@ Result<Moved> Mover::run(const config::Printer& machine, std::span<const motion:
     const Result<std::vector<run::LineEvent>> events = events_of(machine, moves);
     if (!events) return events.error();
     run::StopRequests stop{0};
+    if (stop_ && asked() > 0) return stopped();
     if (watch_)
         if (Status begun = watch_->begin(watched, stop, clock_.now_ns()); !begun)
             return begun.error();
     const motion::StepCounts before = tally_.counts();
     run::ExecutorTiming timing = run::executor_timing(machine);
     timing.braking_ns = braking_ns(machine, moves);
-    PolledClock polled(clock_, watch_ && !signals_ ? &*watch_ : nullptr);
+    PolledClock polled(clock_, watch_ && !stop_ ? &*watch_ : nullptr);
     run::Executor executor(tally_, polled, timing, stop);
     const Result<bool> executed =
-        signals_ ? execute_beside(executor, *events, stop) : execute(executor, *events, stop);
+        stop_ ? execute_beside(executor, *events, stop) : execute(executor, *events, stop);
     if (!executed) return executed.error();
     // Whoever writes next takes all lines but enable for inactive.
     const gpio::LineMask enable = run::line_layout(machine).enable;
     if (Status rests = tally_.write(gpio::all_lines(tally_.line_count()), enable); !rests)
         return rests.error();
     return outcome(before);
+}
+
+unsigned Mover::asked() {
+    const unsigned count = stop_();
+    asked_to_stop_ = asked_to_stop_ || count > 0;
+    return count;
 }
 
 Result<bool> Mover::execute(run::Executor& executor, std::span<const run::LineEvent> events,
@@ -157,13 +168,12 @@ Result<bool> Mover::execute_beside(run::Executor& executor, std::span<const run:
         finished.store(true);
     });
     const auto look = [&] {
-        if (watch_) (void)watch_->inputs().wait_ns(look_ns);
+        if (watch_)
+            (void)watch_->inputs().wait_ns(look_ns);
+        else
+            std::this_thread::sleep_for(std::chrono::nanoseconds(look_ns));
         if (watch_) watch_->poll(clock_.now_ns());
-        constexpr int look_ms = 1;
-        if (signals_->wait_ms(watch_ ? 0 : look_ms)) {
-            asked_to_stop_ = true;
-            ++stop;
-        }
+        stop += asked();
     };
     while (!finished.load()) look();
     edges.join();
@@ -174,8 +184,7 @@ Result<bool> Mover::execute_beside(run::Executor& executor, std::span<const run:
 }
 
 Result<Moved> Mover::outcome(const motion::StepCounts& before) const {
-    if (asked_to_stop_)
-        return Diagnostic{Severity::error, ExitStatus::stopped, "stopped on request", {}};
+    if (asked_to_stop_) return stopped();
     if (watch_ && !watch_->status()) return watch_->status().error();
     Moved moved;
     moved.counts = difference(tally_.counts(), before);

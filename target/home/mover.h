@@ -6,7 +6,8 @@
 //     the result says which closed, and where the motors were when each was first touched; those that closed as it came
 //     to rest are waited for until they have settled.
 //  2. Counts of a result are in microsteps since the begin of that run.
-//  3. SIGINT and the like bring the machine to rest and end with status stopped. After a run the motors are on, and all
+//  3. Who asks for a stop (SIGINT, an emergency line, a client of the print) brings the machine to rest, twice at once, and
+//     ends with status stopped; asked before, nothing moves. After a run the motors are on, and all
 //     lines but enable inactive, as the executor of a print expects them.
 //  4. On a board the lines are written by a thread of high priority and this one watches; with virtual time both are
 //     done by this one, step by step.
@@ -35,9 +36,9 @@ struct Moved {
 
 class Mover {
 public:
-    // `signals` is none with virtual time.
+    // `stop` is empty with virtual time.
     Mover(const config::Printer& printer, gpio::GpioChip& chip, gpio::Clock& clock,
-          gpio::InputLines* inputs, const run::StopSignals* signals);
+          gpio::InputLines* inputs, run::StopSource stop);
 
     // `machine` says what the moves mean for the motors, its start_mm where they begin.
     Result<Moved> run(const config::Printer& machine, std::span<const motion::Move> moves,
@@ -46,6 +47,7 @@ public:
     std::int64_t now_ns() const { return clock_.now_ns(); }
 
 private:
+    unsigned asked();
     Result<bool> execute(run::Executor& executor, std::span<const run::LineEvent> events,
                          run::StopRequests& stop);
     // A watched contact may still settle, and not for ever.
@@ -58,7 +60,7 @@ private:
     gpio::Clock& clock_;
     StepTally tally_;
     std::optional<ContactWatch> watch_;
-    const run::StopSignals* signals_;
+    run::StopSource stop_;
     bool asked_to_stop_ = false;
     std::optional<unsigned> cpu_;
 };

@@ -1,6 +1,10 @@
 #include "target/run/buttons.h"
 
+#include <algorithm>
 #include <array>
+
+#include "target/gpio/gpiod_inputs.h"
+#include "target/run/line_layout.h"
 
 namespace lyr::run {
 
@@ -9,9 +13,7 @@ std::vector<gpio::InputRequest> input_requests(const config::Printer& printer) {
     for (std::size_t i = 0; i < printer.inputs.size(); ++i) {
         const std::optional<config::Pin>& pin = printer.inputs[i];
         if (!pin) continue;
-        requests.push_back({{"input." + std::string(config::input_names[i]), pin->chip, pin->line,
-                             pin->active_low},
-                            static_cast<gpio::Pull>(pin->pull)});
+        requests.push_back(input_request("input." + std::string(config::input_names[i]), *pin));
     }
     return requests;
 }
@@ -47,6 +49,22 @@ Result<std::vector<std::size_t>> Buttons::pressed(std::int64_t now_ns) {
         if (const auto change = input.debounce.settled(now_ns); change && change->active)
             pressed.push_back(input.number);
     return pressed;
+}
+
+Result<std::optional<Buttons>> open_buttons(const config::Printer& printer) {
+    const std::vector<gpio::InputRequest> requests = input_requests(printer);
+    if (requests.empty()) return std::optional<Buttons>();
+    auto lines = gpio::open_gpiod_inputs(requests);
+    if (!lines) return lines.error();
+    Result<Buttons> buttons = Buttons::start(printer, std::move(*lines));
+    if (!buttons) return buttons.error();
+    return std::optional<Buttons>(std::move(*buttons));
+}
+
+bool asks_for_emergency(Buttons& buttons, std::int64_t now_ns) {
+    const Result<std::vector<std::size_t>> pressed = buttons.pressed(now_ns);
+    return !pressed ||
+           std::find(pressed->begin(), pressed->end(), config::input_emergency) != pressed->end();
 }
 
 }  // namespace lyr::run

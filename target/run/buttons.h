@@ -8,6 +8,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "target/config/printer.h"
@@ -38,6 +39,12 @@ private:
     std::unique_ptr<gpio::InputLines> lines_;
     std::vector<Input> inputs_;
 };
+
+// On a board; none: the printer has no inputs.
+Result<std::optional<Buttons>> open_buttons(const config::Printer& printer);
+
+// Where there is no print that a button could mean: the emergency line has become active, or cannot be read.
+bool asks_for_emergency(Buttons& buttons, std::int64_t now_ns);
 
 std::vector<gpio::InputRequest> input_requests(const config::Printer& printer);
 

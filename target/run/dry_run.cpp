@@ -65,6 +65,7 @@ Heating model_heating(const config::Printer& printer, const gpio::Clock& clock) 
 }  // namespace
 
 Result<PrintReport> dry_run(PrintJob job) {
+    job.before = {};  // no endstop would close
     job.printer.pulse.late_limit_ns = std::numeric_limits<std::int64_t>::max();
     gpio::MonotonicClock clock;
     gpio::MockChip chip(line_layout(job.printer).names.size(), clock, {});

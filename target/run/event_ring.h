@@ -48,11 +48,6 @@ public:
     // Closed and empty.
     bool ended() const { return closed_.load(std::memory_order_acquire) && view().empty(); }
 
-    bool full() const {
-        return written_.load(std::memory_order_acquire) - read_.load(std::memory_order_acquire) ==
-               events_.size();
-    }
-
 private:
     std::vector<LineEvent> events_;
     // Apart, so that the two threads do not wait for each other's cache line.

@@ -2,13 +2,23 @@
 
 #include "target/run/event_stream.h"
 
+#include "target/run/inspect.h"
+
 namespace lyr::run {
 
 Result<EventStream> EventStream::open(const std::string& path, const config::Printer& printer,
                                       double filament_diameter_mm, OrderQueue* orders,
                                       std::uint32_t first_layer) {
+    Result<format::Reader> reader = open_file(path, first_layer);
+    if (!reader) return reader.error();
+    return open(std::move(*reader), path, printer, filament_diameter_mm, orders);
+}
+
+Result<EventStream> EventStream::open(format::Reader reader, const std::string& path,
+                                      const config::Printer& printer, double filament_diameter_mm,
+                                      OrderQueue* orders) {
     Result<StepStream> steps =
-        StepStream::open(path, printer, filament_diameter_mm, orders, first_layer);
+        StepStream::open(std::move(reader), path, printer, filament_diameter_mm, orders);
     if (!steps) return steps.error();
     return EventStream(std::move(*steps),
                        PulseSchedule(printer.pulse, line_layout(printer).enable));

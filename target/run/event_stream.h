@@ -24,6 +24,10 @@ public:
     static Result<EventStream> open(const std::string& path, const config::Printer& printer,
                                     double filament_diameter_mm, OrderQueue* orders = nullptr,
                                     std::uint32_t first_layer = 0);
+    // `path` is for messages.
+    static Result<EventStream> open(format::Reader reader, const std::string& path,
+                                    const config::Printer& printer, double filament_diameter_mm,
+                                    OrderQueue* orders);
 
     // Appends the next events; false: these were the last.
     Result<bool> next(std::vector<LineEvent>& events);

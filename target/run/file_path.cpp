@@ -221,6 +221,8 @@ void FilePath::extrude(PathCurve& curve, double way_mm) {
     const double filament_mm =
         way_mm * format::cross_section_mm2(reader_.path()) / filament_area_mm2_;
     totals_.filament_mm += filament_mm;
+    if (!(reader_.path().speed_mm_s > 0) && !demands_.still_layer)
+        demands_.still_layer = totals_.layers;
     if (filament_mm > 0) note_pushing();
     curve.to_mm[axis_e] = fed_mm(filament_mm);
 }

@@ -37,7 +37,8 @@ struct Demands {
     // The lowest temperature that the tool is sure to have where filament is pushed: that of the last wait, or of a
     // lower target since. None: no filament is.
     std::optional<double> coldest_extrusion_c;
-    std::uint32_t coldest_layer = 0;  // from 1
+    std::uint32_t coldest_layer = 0;           // from 1
+    std::optional<std::uint32_t> still_layer;  // from 1: the first with a path whose speed is 0
 };
 
 class FilePath {

@@ -68,16 +68,21 @@ Status check_range(const Box& box, const PathCurve& curve, const std::string& pa
 }  // namespace
 
 Result<format::Reader> open_file(const std::string& path, std::uint32_t first_layer) {
-    Result<format::Reader> reader =
-        format::Reader::open(path, {.keep_thumbnails = false, .keep_configuration = false});
-    if (!reader || first_layer == 0) return reader;
-    if (const Status found = reader->seek_layer(first_layer); !found) return found.error();
-    return reader;
+    const Result<PrintFile> file = PrintFile::open(path);
+    if (!file) return file.error();
+    return file->reader(first_layer);
 }
 
 Result<Inspection> inspect(const std::string& path, const config::Printer& printer) {
-    Result<format::Reader> reader = open_file(path);
+    const Result<PrintFile> file = PrintFile::open(path);
+    if (!file) return file.error();
+    return inspect(*file, printer);
+}
+
+Result<Inspection> inspect(const PrintFile& print, const config::Printer& printer) {
+    Result<format::Reader> reader = print.reader();
     if (!reader) return reader.error();
+    const std::string& path = print.path();
     Inspection inspection;
     inspection.header = reader->header();
     inspection.filament_diameter_mm =
@@ -113,8 +118,19 @@ Result<Inspection> inspect(const std::string& path, const config::Printer& print
                           "the file uses tool " + std::to_string(inspection.demands.highest_tool) +
                               "; this printer has tool 0 only",
                           {.file = path}};
+    if (const auto layer = inspection.demands.still_layer) {
+        Diagnostic still{Severity::error,
+                         ExitStatus::input,
+                         "a path has a speed of 0 mm/s: a .lyr file states speeds in steps of 0.01 "
+                         "mm/s, and what it was made from asks for less",
+                         {.file = path}};
+        still.where.layer = static_cast<int>(*layer);
+        return still;
+    }
     inspection.low_mm = all.low_mm;
     inspection.high_mm = all.high_mm;
+    // Written to meanwhile, it has been seen in part.
+    if (const Status same = print.check(); !same) return same.error();
     return inspection;
 }
 

@@ -4,7 +4,8 @@
 // Contract
 //  1. Every checksum of the file has been verified when this succeeds.
 //  2. A path that leaves the range of an axis anywhere, between the ends of an arc too, is an error
-//     (status machine) with layer and position; a second tool is one of status unsupported.
+//     (status machine) with layer and position; a second tool is one of status unsupported; a path
+//     without speed is one of status input.
 //  3. The result says what the file asks of the machine.
 
 #pragma once
@@ -13,6 +14,7 @@
 
 #include "target/config/printer.h"
 #include "target/run/file_path.h"
+#include "target/run/print_file.h"
 
 namespace lyr::run {
 
@@ -24,9 +26,10 @@ struct Inspection {
     double filament_diameter_mm = 0;  // the printer's, or else the file's
 };
 
-// What every pass over the file opens it with: nothing is kept that a printer does not need.
+// For one pass over a file.
 Result<format::Reader> open_file(const std::string& path, std::uint32_t first_layer = 0);
 
+Result<Inspection> inspect(const PrintFile& print, const config::Printer& printer);
 Result<Inspection> inspect(const std::string& path, const config::Printer& printer);
 
 }  // namespace lyr::run

@@ -160,7 +160,10 @@ Journal::Journal(Journal&& other) noexcept
       sequence_(other.sequence_) {}
 
 Journal::~Journal() {
-    if (descriptor_ >= 0) ::close(descriptor_);
+    if (descriptor_ < 0) return;
+    // A print that did not begin leaves nothing behind.
+    if (sequence_ == 0) remove();
+    ::close(descriptor_);
 }
 
 Status Journal::write(const JournalEntry& entry) {

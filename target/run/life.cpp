@@ -96,6 +96,7 @@ void Life::serve(const Command& command) {
 
 void Life::refuse(const Command& command, const std::string& why) {
     message_ = "refused `" + text_of(command) + "`: " + why;
+    if (hear_of_refusal) hear_of_refusal(message_);
 }
 
 float Life::pace() const {

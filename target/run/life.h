@@ -53,6 +53,8 @@ public:
 
     // Takes heat away at once, from any thread.
     std::function<void()> cut;
+    // May be empty: hears what status().message says of a command that is refused.
+    std::function<void(const std::string& why)> hear_of_refusal;
     // Both may be none. `identity` is that of the file.
     void keep_journal(JournalWriter* journal, const FileIdentity& identity);
     // Before the first tick; the printer's start is where the head is after the lift.

@@ -11,12 +11,17 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <utility>
 
+#include "base/text.h"
+
 namespace lyr::run {
 namespace {
+
+using Clock = std::chrono::steady_clock;
 
 struct Request {
     gpio::LineMask changed = 0, levels = 0;
@@ -102,8 +107,12 @@ bool has_ended(pid_t process) {
 
 class KeptChip final : public gpio::GpioChip {
 public:
-    KeptChip(std::size_t line_count, int socket, pid_t keeper, OpenChip open)
-        : line_count_(line_count), socket_(socket), keeper_(keeper), open_(std::move(open)) {
+    KeptChip(std::size_t line_count, int socket, pid_t keeper, OpenChip open, int silent_ms)
+        : line_count_(line_count),
+          socket_(socket),
+          keeper_(keeper),
+          open_(std::move(open)),
+          silent_(silent_ms) {
         for (const int way : {SO_RCVTIMEO, SO_SNDTIMEO})
             (void)::setsockopt(socket_, SOL_SOCKET, way, &longest_answer, sizeof longest_answer);
     }
@@ -130,19 +139,28 @@ private:
     Status ask(const Request& request) {
         Reply reply;
         if (keeper_ < 0) return lost("is gone");
-        if (!send_whole(socket_, request) || !receive_whole(socket_, reply)) return take_over();
+        const bool was_silent = Clock::now() - asked_ > silent_;
+        asked_ = Clock::now();
+        if (!send_whole(socket_, request) || !receive_whole(socket_, reply))
+            return take_over(was_silent);
         if (reply.ok) return Done{};
         return Diagnostic{Severity::error, ExitStatus::machine, reply.message.data(), {}};
     }
 
     // A keeper that was killed has left its lines as they were, one that hangs holds them so.
-    Diagnostic take_over() {
+    Diagnostic take_over(bool was_silent) {
         ::kill(keeper_, SIGKILL);
         (void)has_ended(std::exchange(keeper_, -1));
         Result<std::unique_ptr<gpio::GpioChip>> chip = open_();
         if (!chip || !(*chip)->write(gpio::all_lines(line_count_), 0))
             return lost("is gone or hangs, and they may still be on: cut the power now");
         own_ = std::move(*chip);
+        // Whoever stopped the program, by Ctrl-Z or SIGSTOP, must not look for a fault in the keeper.
+        if (was_silent)
+            return lost(formatted(
+                "has switched them off, because this program was silent for more than %lld s: "
+                "it was stopped, or the board is overloaded",
+                static_cast<long long>(silent_.count() / 1'000)));
         return lost("is gone or hangs; they were taken from it and switched off");
     }
 
@@ -151,6 +169,8 @@ private:
     pid_t keeper_;  // below 0: none any more
     OpenChip open_;
     std::unique_ptr<gpio::GpioChip> own_;  // of lines that were taken over; all are inactive
+    std::chrono::milliseconds silent_;
+    Clock::time_point asked_ = Clock::now();
     bool released_ = false;
 };
 
@@ -176,7 +196,7 @@ Result<std::unique_ptr<gpio::GpioChip>> keep_lines(std::size_t line_count, const
     const bool answered = receive_whole(sockets[0], opened);
     if (answered && opened.ok)
         return std::unique_ptr<gpio::GpioChip>(
-            std::make_unique<KeptChip>(line_count, sockets[0], keeper, open));
+            std::make_unique<KeptChip>(line_count, sockets[0], keeper, open, silent_ms));
     ::close(sockets[0]);
     ::waitpid(keeper, nullptr, 0);
     if (!answered) return lost("ended at its start");

@@ -17,11 +17,29 @@ std::string key_of(std::size_t axis, const char* line) {
     return "axis." + name_of(axis, line);
 }
 
+gpio::Pull pull_of(config::Pull pull) {
+    switch (pull) {
+        case config::Pull::as_is:
+            return gpio::Pull::as_is;
+        case config::Pull::up:
+            return gpio::Pull::up;
+        case config::Pull::down:
+            return gpio::Pull::down;
+        case config::Pull::none:
+            return gpio::Pull::none;
+    }
+    return gpio::Pull::as_is;
+}
+
 }  // namespace
 
 gpio::LineRequest line_request(std::string purpose, const config::Pin& pin, bool inverted) {
     return {std::move(purpose), pin.chip, pin.line, pin.active_low != inverted,
             pin.open_drain ? gpio::Drive::open_drain : gpio::Drive::push_pull};
+}
+
+gpio::InputRequest input_request(std::string purpose, const config::Pin& pin) {
+    return {{std::move(purpose), pin.chip, pin.line, pin.active_low}, pull_of(pin.pull)};
 }
 
 LineLayout line_layout(const config::Printer& printer) {

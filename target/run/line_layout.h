@@ -15,6 +15,7 @@
 
 #include "target/config/printer.h"
 #include "target/gpio/gpio_chip.h"
+#include "target/gpio/input_lines.h"
 
 namespace lyr::run {
 
@@ -44,8 +45,9 @@ struct LineLayout {
 
 LineLayout line_layout(const config::Printer& printer);
 
-// A line of printer.toml as target/gpio asks for it.
+// Lines of printer.toml as target/gpio asks for them.
 gpio::LineRequest line_request(std::string purpose, const config::Pin& pin, bool inverted = false);
+gpio::InputRequest input_request(std::string purpose, const config::Pin& pin);
 
 Result<std::vector<gpio::LineRequest>> line_requests(const config::Printer& printer);
 

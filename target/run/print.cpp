@@ -10,6 +10,7 @@
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include "base/constants.h"
 #include "base/text.h"
@@ -20,6 +21,7 @@
 #include "target/run/event_stream.h"
 #include "target/run/executor.h"
 #include "target/run/life.h"
+#include "target/run/opening.h"
 #include "target/run/real_time.h"
 #include "target/run/stop_signals.h"
 #include "target/run/watchdog.h"
@@ -70,15 +72,17 @@ private:
     std::optional<thermal::Trip> trip_;
 };
 
-// The planning thread.
-Status fill(EventStream& stream, Shared& shared) {
+// The planning thread. Of a file that was changed after its inspection nothing gets into the ring.
+Status fill(const PrintFile& file, EventStream& stream, Shared& shared) {
     std::vector<LineEvent> events;
     Status status = Done{};
     for (bool more = true; more && !shared.finished.load();) {
         events.clear();
-        const Result<bool> next = stream.next(events);
+        Result<bool> next = stream.next(events);
+        if (Status same = file.check(); !same) next = same.error();
         if (!next) {
             status = next.error();
+            events.clear();
             // What the ring still holds is enough to brake on.
             ++shared.stop_requests;
         }
@@ -132,28 +136,6 @@ private:
     double next_s_ = 0;
 };
 
-// Feeds the board's watchdog and the init system's once a second, while the heaters are tended.
-class Supervision {
-public:
-    explicit Supervision(std::optional<Watchdog> watchdog) : watchdog_(std::move(watchdog)) {
-        notify("READY=1");
-    }
-    void feed(double now_s, const Shared& shared, bool heats, const std::string& text) {
-        if (now_s < next_s_) return;
-        next_s_ = now_s + 1;
-        const std::uint32_t ticks = shared.heat_ticks.load();
-        if (heats && ticks == seen_ticks_) return;
-        seen_ticks_ = ticks;
-        if (watchdog_) watchdog_->feed();
-        notify("WATCHDOG=1\nSTATUS=" + text);
-    }
-
-private:
-    std::optional<Watchdog> watchdog_;
-    double next_s_ = 0;
-    std::uint32_t seen_ticks_ = 0;
-};
-
 void press(Buttons& buttons, std::int64_t now_ns, Life& life, Shared& shared) {
     const Result<std::vector<std::size_t>> pressed = buttons.pressed(now_ns);
     if (!pressed) return shared.tripped({thermal::GuardKind::silent, pressed.error().message});
@@ -176,6 +158,42 @@ struct Watched {
     Supervision& supervision;
 };
 
+// What goes on beside the motion of a print and that before it.
+void look_after(const Watched& watched, double now_s) {
+    auto& [signals, shared, life, heating, buttons, supervision] = watched;
+    if (heating)
+        if (const auto silent = heating->stage->expire(now_s)) shared.tripped(*silent);
+    if (buttons) press(*buttons, gpio::MonotonicClock().now_ns(), life, shared);
+    if (heating && shared.trip()) (void)heating->stage->all_off();
+    supervision.feed(now_s, heating ? std::optional(shared.heat_ticks.load()) : std::nullopt,
+                     status_text(shared.control.status()));
+}
+
+// What is to be done before the path, and whether that may begin.
+Status open(const Watched& watched, const PrintJob& job, const Inspection& inspection,
+            gpio::GpioChip& chip, gpio::Clock& clock) {
+    if (!job.before) return Done{};
+    Shared& shared = watched.shared;
+    PrintStatus status = shared.control.status();
+    status.layers = inspection.totals.layers;
+    status.estimated_s = inspection.header.summary.estimated_time_s;
+    Opening opening(shared.control, shared.desk, watched.signals, std::move(status),
+                    [&](double now_s) { look_after(watched, now_s); });
+    const Status ready = job.before(chip, clock, [&] { return opening.asked(); });
+    (void)opening.asked();
+    if (shared.stop_requests.load() == 0) return ready;
+    const bool cancelled = shared.control.ends();
+    // Serves an emergency stop.
+    watched.life.tick(heat_time_s());
+    if (const auto trip = shared.trip()) return diagnostic_of(*trip);
+    return Diagnostic{
+        Severity::error,
+        ExitStatus::stopped,
+        watched.life.ended_by().value_or(cancelled ? "cancelled" : "stopped on request") +
+            "; before the path began, all lines are released",
+        {}};
+}
+
 // Until the real-time thread has ended.
 void watch(const Watched& watched, const PrintJob& job, const Inspection& inspection) {
     auto& [signals, shared, life, heating, buttons, supervision] = watched;
@@ -184,13 +202,9 @@ void watch(const Watched& watched, const PrintJob& job, const Inspection& inspec
     while (!shared.finished.load()) {
         if (signals.wait_ms(signal_wait_ms)) ++shared.stop_requests;
         const double now_s = heat_time_s();
-        if (heating)
-            if (const auto silent = heating->stage->expire(now_s)) shared.tripped(*silent);
         if (!heating) idle.tick(now_s);
-        if (buttons) press(*buttons, gpio::MonotonicClock().now_ns(), life, shared);
-        if (heating && shared.trip()) (void)heating->stage->all_off();
+        look_after(watched, now_s);
         life.tick(now_s);
-        supervision.feed(now_s, shared, heating, status_text(shared.control.status()));
         if (!job.progress || now_s < next_progress_s) continue;
         next_progress_s = now_s + progress_s;
         job.progress({life.layer(), inspection.totals.layers,
@@ -219,22 +233,47 @@ Diagnostic derailed(Diagnostic error) {
 
 // What is known and decided before a line is touched.
 struct Prepared {
+    PrintFile file;
     Inspection inspection;
     Diagnostics notes;
+    std::optional<Journal> journal;  // none: none is asked for, or cannot be had, which is a note
+    FileIdentity identity;
 };
 
 bool can_resume(const PrintJob& job) {
     return job.control || job.printer.inputs[config::input_pause];
 }
 
+// Its file is read to its end, which heaters must not wait for.
+void open_journal(const PrintJob& job, Prepared& prepared) {
+    if (job.journal.empty()) return;
+    const Result<FileIdentity> file = identity_of(job.file);
+    Result<Journal> journal = Journal::open(job.journal);
+    if (file && journal) {
+        prepared.identity = *file;
+        prepared.journal.emplace(std::move(*journal));
+        return;
+    }
+    prepared.notes.push_back(file ? journal.error() : file.error());
+    prepared.notes.back().severity = Severity::warning;
+    prepared.notes.back().message += "; this print cannot be resumed after a loss of power";
+}
+
 Result<Prepared> prepare(const PrintJob& job) {
     if (const Status has = check_cpu(job.printer.timing.cpu); !has) return has.error();
-    Result<Inspection> inspection = inspect(job.file, job.printer);
+    Result<PrintFile> file = PrintFile::open(job.file);
+    if (!file) return file.error();
+    Result<Inspection> inspection = inspect(*file, job.printer);
     if (!inspection) return inspection.error();
-    Prepared prepared{std::move(*inspection), {}};
+    Prepared prepared{std::move(*file), std::move(*inspection), {}, {}, {}};
     const Status possible = check_demands(prepared.inspection, job.printer, job.no_heat,
                                           prepared.notes, can_resume(job));
     if (!possible) return possible.error();
+    open_journal(job, prepared);
+    if (const Status same = prepared.file.check(); !same) return same.error();
+    lock_memory(prepared.notes);
+    // As the real-time thread will.
+    std::thread([&] { take_precedence(job.printer.timing.cpu, prepared.notes); }).join();
     return prepared;
 }
 
@@ -281,22 +320,6 @@ void report_on(const Executor& executor, const gpio::TracingClock& clock, PrintR
     report.lateness = clock.histogram();
 }
 
-// None: no journal is asked for, or cannot have one, which is a warning.
-std::unique_ptr<JournalWriter> journal_for(const PrintJob& job, FileIdentity& identity,
-                                           Diagnostics& warnings) {
-    if (job.journal.empty()) return nullptr;
-    const Result<FileIdentity> file = identity_of(job.file);
-    Result<Journal> journal = Journal::open(job.journal);
-    if (file && journal) {
-        identity = *file;
-        return std::make_unique<JournalWriter>(std::move(*journal));
-    }
-    warnings.push_back(file ? journal.error() : file.error());
-    warnings.back().severity = Severity::warning;
-    warnings.back().message += "; this print cannot be resumed after a loss of power";
-    return nullptr;
-}
-
 // All that a print has beside its job, until its threads have ended.
 struct Running {
     Running(const PrintJob& job, const Inspection& inspection, gpio::GpioChip& chip,
@@ -322,9 +345,10 @@ struct Running {
 };
 
 // The real-time thread.
-void drive(Running& running, gpio::GpioChip& chip, Diagnostics& warnings) {
+void drive(Running& running, gpio::GpioChip& chip) {
     Shared& shared = running.shared;
-    take_precedence(running.printer.timing.cpu, warnings);
+    Diagnostics told_before;
+    take_precedence(running.printer.timing.cpu, told_before);
     while (!shared.filled.load() && !shared.stop_requests.load())
         std::this_thread::sleep_for(executor_nap);
     running.outcome.executed = drain(running.executor, running.traced, shared);
@@ -340,36 +364,45 @@ struct Around {
     std::optional<Watchdog> watchdog{};
 };
 
-Result<PrintReport> run(const PrintJob& job, const Prepared& prepared, gpio::GpioChip& chip,
+Result<PrintReport> run(const PrintJob& job, Prepared& prepared, gpio::GpioChip& chip,
                         gpio::Clock& clock, Around around) {
     Heating* const heating = around.heating;
     const Inspection& inspection = prepared.inspection;
     Running running(job, inspection, chip, clock, heating);
     Shared& shared = running.shared;
     Life& life = running.life;
-    Result<EventStream> stream =
-        EventStream::open(job.file, running.printer, inspection.filament_diameter_mm,
-                          &shared.orders, job.resumption ? job.resumption->first_layer : 0);
+    Result<format::Reader> reader =
+        prepared.file.reader(job.resumption ? job.resumption->first_layer : 0);
+    if (!reader) return reader.error();
+    Result<EventStream> stream = EventStream::open(std::move(*reader), job.file, running.printer,
+                                                   inspection.filament_diameter_mm, &shared.orders);
     if (!stream) return stream.error();
     stream->heed_speed(shared.course.plan_factor);
     const StopSignals signals;
     PrintReport report;
     report.warnings = prepared.notes;
-    FileIdentity identity;
-    const std::unique_ptr<JournalWriter> journal = journal_for(job, identity, report.warnings);
-    life.keep_journal(journal.get(), identity);
-    lock_memory(report.warnings);
+    report.told = report.warnings.size();
     if (job.begun) job.begun();
+    // At once: the keeper of the heaters' lines expects to hear of them.
     Tending tending(heating, shared);
-    std::thread planner([&] { running.outcome.planned = fill(*stream, shared); });
-    std::thread edges([&] { drive(running, chip, report.warnings); });
-    {
-        Supervision supervision(std::move(around.watchdog));
-        watch({signals, shared, life, heating, around.buttons, supervision}, job, inspection);
-        edges.join();
-        planner.join();
+    Supervision supervision(std::move(around.watchdog));
+    const Watched watched{signals, shared, life, heating, around.buttons, supervision};
+    if (const Status opened = open(watched, job, inspection, chip, clock); !opened) {
+        shared.finished.store(true);
         tending.join();
+        (void)chip.release();
+        life.end(opened, false);
+        return opened.error();
     }
+    std::optional<JournalWriter> journal;
+    if (prepared.journal) journal.emplace(std::move(*prepared.journal));
+    life.keep_journal(journal ? &*journal : nullptr, prepared.identity);
+    std::thread planner([&] { running.outcome.planned = fill(prepared.file, *stream, shared); });
+    std::thread edges([&] { drive(running, chip); });
+    watch(watched, job, inspection);
+    edges.join();
+    planner.join();
+    tending.join();
     const Status status = status_of(shared, life, running.outcome);
     const bool is_known = running.outcome.executed.ok() && shared.stop_requests < 2;
     if (journal && (status || life.is_cancelled()))
@@ -386,44 +419,31 @@ Result<PrintReport> run(const PrintJob& job, const Prepared& prepared, gpio::Gpi
     return report;
 }
 
-Result<std::optional<Buttons>> open_buttons(const config::Printer& printer) {
-    const std::vector<gpio::InputRequest> requests = input_requests(printer);
-    if (requests.empty()) return std::optional<Buttons>();
-    auto lines = gpio::open_gpiod_inputs(requests);
-    if (!lines) return lines.error();
-    Result<Buttons> buttons = Buttons::start(printer, std::move(*lines));
-    if (!buttons) return buttons.error();
-    return std::optional<Buttons>(std::move(*buttons));
-}
-
 }  // namespace
 
 Result<PrintReport> print(const PrintJob& job, gpio::GpioChip& chip, gpio::Clock& clock,
                           Heating* heating, Buttons* buttons) {
     keep_stacks_small();
-    const Result<Prepared> prepared = prepare(job);
+    Result<Prepared> prepared = prepare(job);
     if (!prepared) return prepared.error();
     if (!heating && !job.no_heat && !prepared->inspection.demands.hottest.empty())
         return Diagnostic{Severity::error, ExitStatus::internal, "no heaters were opened", {}};
-    if (job.checked) job.checked();
+    if (job.checked) job.checked(prepared->notes);
     return run(job, *prepared, chip, clock, {heating, buttons});
 }
 
 Result<PrintReport> print(const PrintJob& job) {
     keep_stacks_small();
-    const Result<Prepared> prepared = prepare(job);
+    Result<Prepared> prepared = prepare(job);
     if (!prepared) return prepared.error();
     const Result<std::vector<gpio::LineRequest>> requests = line_requests(job.printer);
     if (!requests) return requests.error();
-    if (job.checked) job.checked();
+    if (job.checked) job.checked(prepared->notes);
     // From here on lines are held: one that comes between homing and printing must not be lost, nor end the program.
     const StopSignals signals;
     const Result<std::unique_ptr<gpio::GpioChip>> chip = gpio::open_gpiod_chip(*requests);
     if (!chip) return chip.error();
     gpio::MonotonicClock clock;
-    // Before the heaters: their keeper is a process of its own, which expects to hear of them.
-    if (job.before)
-        if (Status ready = job.before(**chip, clock); !ready) return ready.error();
     std::optional<Heating> heating;
     const Demands& demands = prepared->inspection.demands;
     if (!job.no_heat && !demands.hottest.empty()) {

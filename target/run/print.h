@@ -3,7 +3,8 @@
 //
 // Contract
 //  1. Nothing moves before inspect() has found the whole file right and check_demands() has found
-//     nothing that this machine cannot do.
+//     nothing that this machine cannot do. A file that is changed after that ends the print, and nothing of what is new
+//     in it is printed.
 //  2. Heaters do what the file orders, tended by a thread of their own; with `no_heat` none is touched. When a guard
 //     fires, all heaters are off at once, the head comes to rest, and the guard's message (status machine) is the
 //     result.
@@ -13,7 +14,8 @@
 //     once; both end with status stopped.
 //     A processor that timing.cpu names and this board lacks is an error before anything is held.
 //  5. The pulses are those of the simulation, in the same order, with at least the same gaps.
-//  6. Commands of `control` are served as life.h says, by this thread; it tells there what the print is, to its end.
+//  6. Commands of `control` are served as life.h says, by this thread; it tells there what the print is, to its end. While
+//     `before` is done they are what opening.h says; heaters are tended and inputs watched from then on.
 //  7. With a journal (journal.h) the print can be resumed after it was cut off, also by a signal or a guard; one that is done
 //     or cancelled takes it away. A journal that cannot be written is a warning.
 //  8. The watchdog is fed by this thread as long as the heaters' thread ticks; the init system is told how it goes.
@@ -30,6 +32,7 @@
 #include "target/run/heating.h"
 #include "target/run/resumption.h"
 #include "target/run/simulate.h"
+#include "target/run/stop_signals.h"
 
 namespace lyr::run {
 
@@ -39,12 +42,12 @@ struct PrintJob {
     bool no_heat = false;
     ProgressSink progress;
     // What is done on the lines before the print, such as homing: the motors are to stay on and the head at start_mm.
-    std::function<Status(gpio::GpioChip&, gpio::Clock&)> before{};
+    std::function<Status(gpio::GpioChip&, gpio::Clock&, const StopSource&)> before{};
     PrintControl* control = nullptr;  // none: only signals and buttons do something
     // Called once, when the file and the printer are found right: no line is held yet, and signals still end the program.
-    // What is said later may wait for a terminal with the motors on.
-    std::function<void()> checked{};
-    // Called once, when all lines are held; from here on threads may be started.
+    // What is said later may wait for a terminal with the motors on: so it gets all that is to be said of what is to come.
+    std::function<void(const Diagnostics& notes)> checked{};
+    // Called once, when all lines are held, and before `before`; from here on threads may be started.
     std::function<void()> begun{};
     std::string journal{};  // its path; empty: none
     std::optional<Resumption> resumption{};
@@ -62,6 +65,7 @@ struct PrintReport {
     // How late waits ended; the buckets are those of TracingClock.
     std::array<std::uint64_t, gpio::TracingClock::buckets> lateness{};
     Diagnostics warnings;
+    std::size_t told = 0;  // so many of the warnings, the first, were known before anything moved
 };
 
 // On the lines that the printer's file names.

@@ -1,5 +1,6 @@
 #include "target/run/print_control.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace lyr::run {
@@ -23,6 +24,14 @@ bool PrintControl::post(const Command& command) {
 PrintStatus PrintControl::status() const {
     const std::lock_guard lock(mutex_);
     return status_;
+}
+
+bool PrintControl::ends() const {
+    const std::lock_guard lock(mutex_);
+    return std::any_of(waiting_.begin(), waiting_.end(), [](const Command& command) {
+        return std::holds_alternative<Cancel>(command) ||
+               std::holds_alternative<EmergencyStop>(command);
+    });
 }
 
 std::optional<Command> PrintControl::take() {

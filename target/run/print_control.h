@@ -64,6 +64,8 @@ public:
     PrintStatus status() const;
 
     // For the print.
+    // A cancel or an emergency stop waits.
+    bool ends() const;
     std::optional<Command> take();
     void publish(PrintStatus status);
     StopRequests& stop_requests() { return stop_requests_; }

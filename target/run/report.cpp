@@ -164,6 +164,8 @@ std::string text_of(const SimulationReport& report) {
     if (report.waited_s > 0)
         text += ", and " + duration_text(report.waited_s) + " of waiting for temperatures";
     if (report.paused_s > 0) text += ", and " + duration_text(report.paused_s) + " of pauses";
+    if (report.slowed_s > 0)
+        text += ", and " + duration_text(report.slowed_s) + " more at the lower speed asked for";
     text +=
         formatted("\n  extruded     %.3f mm with %.3f mm of %.2f mm filament\n", totals.extruded_mm,
                   totals.filament_mm, report.inspection.filament_diameter_mm);
@@ -197,8 +199,8 @@ std::string json_of(const SimulationReport& report) {
     text += formatted(",\"layers\":%u,\"motions\":%llu,\"print_time_s\":%.9f,\"delayed_ns\":%lld",
                       totals.layers, static_cast<unsigned long long>(totals.motions),
                       report.print_time_s, static_cast<long long>(report.delayed_ns));
-    text += formatted(",\"waited_s\":%.3f,\"paused_s\":%.3f,\"heaters\":{", report.waited_s,
-                      report.paused_s);
+    text += formatted(",\"waited_s\":%.3f,\"paused_s\":%.3f,\"slowed_s\":%.3f,\"heaters\":{",
+                      report.waited_s, report.paused_s, report.slowed_s);
     for (const HeatFigures& heat : report.heat)
         text += formatted("%s\"%s\":{\"highest_c\":%.3f,\"full_power_s\":%.3f}",
                           &heat == &report.heat.front() ? "" : ",",

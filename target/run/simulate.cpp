@@ -42,6 +42,13 @@ Diagnostic tripped(const thermal::SimulatedHeat& heat, std::uint32_t layer) {
     return error;
 }
 
+Diagnostic script_warning(std::int64_t time_ns, const std::string& what) {
+    return {Severity::warning,
+            ExitStatus::ok,
+            formatted("after %.1f s: ", static_cast<double>(time_ns) / ns_per_s) + what,
+            {}};
+}
+
 // Whether anybody asks anything of the print.
 bool lives(const SimulationJob& job) {
     return !job.script.empty() || job.control || job.resumption ||
@@ -76,6 +83,9 @@ public:
               job.line_faults.motors) {
         // Without its switch a heater is cold at once.
         life_.cut = [this] { heat_.release(); };
+        life_.hear_of_refusal = [this](const std::string& why) {
+            notes_.push_back(script_warning(clock_.now_ns(), why));
+        };
         if (job.heat_watch)
             heat_.observe(
                 [this](double time_s) { job_.heat_watch(time_s, heat_.any_heater_on()); });
@@ -127,6 +137,7 @@ private:
     LineLayout layout_;
     gpio::MockChip mock_;
     double print_time_s_ = 0, waited_s_ = 0;
+    Diagnostics notes_;  // of the script
 };
 
 Status Simulation::run(ReplaceFile* trace) {
@@ -174,7 +185,8 @@ Status Simulation::pump(Executor& executor, ReplaceFile* trace) {
 
 void Simulation::live(double time_s) {
     for (; posted_ < job_.script.size() && job_.script[posted_].time_s <= time_s; ++posted_)
-        (void)control_.post(job_.script[posted_].command);
+        if (!control_.post(job_.script[posted_].command))
+            notes_.push_back(script_warning(clock_.now_ns(), "too many commands at once"));
     const std::vector<double>& signals_s = job_.line_faults.signals_s;
     for (; signalled_ < signals_s.size() && signals_s[signalled_] <= time_s; ++signalled_)
         ++control_.stop_requests();
@@ -213,6 +225,17 @@ SimulationReport Simulation::report() const {
     report.waited_s = waited_s_;
     report.paused_s = life_.paused_s();
     report.trip_steps = trip_steps_;
+    const auto is_speed = [](const TimedCommand& timed) {
+        return std::holds_alternative<SetSpeedFactor>(timed.command);
+    };
+    const double took_s = static_cast<double>(clock_.now_ns()) / ns_per_s;
+    if (std::any_of(job_.script.begin(), job_.script.end(), is_speed))
+        report.slowed_s = std::max(0.0, took_s - print_time_s_ - waited_s_ - report.paused_s);
+    report.notes = notes_;
+    if (posted_ < job_.script.size())
+        report.notes.push_back(script_warning(
+            clock_.now_ns(), formatted("the print ended, and %zu commands of the script came after",
+                                       job_.script.size() - posted_)));
     for (std::size_t i = 0; i < config::heater_count; ++i) {
         const thermal::HeaterStatus* status = heat_.control().status(i);
         if (heats_ && status && status->on_s > 0)
@@ -226,25 +249,15 @@ struct Heed {
     Diagnostics notes;
 };
 
-// What a print would refuse is worth knowing, but no reason not to simulate: the motions are made cold then.
-Heed heed(const Inspection& inspection, const SimulationJob& job) {
+// A simulation has nobody who would tell it to go on, and passes over pauses; whatever else a print refuses it refuses too.
+Result<Heed> heed(const Inspection& inspection, const SimulationJob& job) {
     Heed result;
-    const bool asked = !inspection.demands.hottest.empty();
-    const auto possible = [&](bool no_heat) {
-        result.notes.clear();
-        const Status checked =
-            check_demands(inspection, job.printer, no_heat, result.notes, lives(job));
-        if (checked) return true;
-        result.notes.push_back(checked.error());
-        result.notes.back().severity = Severity::warning;
-        return checked.error().status == ExitStatus::unsupported;
-    };
-    result.heats = asked && !job.no_heat && possible(false);
-    if (result.heats) return result;
-    Diagnostics why;
-    if (asked && !job.no_heat) why.push_back(result.notes.back());
-    (void)possible(true);
-    result.notes.insert(result.notes.end(), why.begin(), why.end());
+    const Status possible =
+        check_demands(inspection, job.printer, job.no_heat, result.notes, lives(job));
+    if (!possible && possible.error().status != ExitStatus::unsupported) return possible.error();
+    if (!possible) result.notes.push_back(possible.error());
+    if (!possible) result.notes.back().severity = Severity::warning;
+    result.heats = !job.no_heat && !inspection.demands.hottest.empty();
     return result;
 }
 
@@ -266,9 +279,10 @@ Result<SimulationReport> simulate(const SimulationJob& asked) {
     const Result<Inspection> inspection = inspect(job.file, job.printer);
     if (!inspection) return inspection.error();
     const double diameter_mm = inspection->filament_diameter_mm;
-    Heed heeded = heed(*inspection, job);
-    OrderQueue orders({heeded.heats, lives(job)});
-    OrderQueue* wanted = heeded.heats || lives(job) ? &orders : nullptr;
+    Result<Heed> heeded = heed(*inspection, job);
+    if (!heeded) return heeded.error();
+    OrderQueue orders({heeded->heats, lives(job)});
+    OrderQueue* wanted = heeded->heats || lives(job) ? &orders : nullptr;
     Result<EventStream> stream =
         EventStream::open(job.file, job.printer, diameter_mm, wanted, first_layer);
     if (!stream) return stream.error();
@@ -276,12 +290,12 @@ Result<SimulationReport> simulate(const SimulationJob& asked) {
     if (!reader) return reader.error();
     Simulation simulation(job, *inspection, std::move(*stream),
                           FilePath(std::move(*reader), job.printer.start_mm, diameter_mm), wanted,
-                          heeded.heats);
+                          heeded->heats);
     if (const Status run = simulation.run(trace ? &*trace : nullptr); !run) return run.error();
     if (trace)
         if (const Status written = trace->commit(); !written) return written.error();
     SimulationReport report = simulation.report();
-    report.notes = std::move(heeded.notes);
+    report.notes.insert(report.notes.begin(), heeded->notes.begin(), heeded->notes.end());
     return report;
 }
 

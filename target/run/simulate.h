@@ -11,10 +11,10 @@
 //  3. within_limits() says that no axis ever deviated, in either sense, by more than half a step, what the
 //     axis moves at its highest speed in the nanosecond that times are rounded to, and a millionth of a
 //     step for rounding together; and that no pulse was shorter than the printer's file asks.
-//  4. Heaters are models behind mock lines (thermal/simulated_heat.h), unless `no_heat`, or the file asks for none,
-//     or the printer cannot do what it asks, which a note then tells. `faults` break them at their times; a guard
+//  4. Heaters are models behind mock lines (thermal/simulated_heat.h), unless `no_heat`, or the file asks for none. What a
+//     print is refused for is refused, but pauses that nobody would end. `faults` break heaters at their times; a guard
 //     that fires ends the simulation with its message (status machine) and the time.
-//  5. `script` gives commands at their times, and the pauses that the file asks for are made. A script that has ended while
+//  5. `script` gives commands at their times, one that is refused or comes after the end is a warning, and the pauses that the file asks for are made. A script that has ended while
 //     the print rests ends it. What the head does on trips is no part of 2.
 //  6. With a trace path, the lines are written there as a wave file, which appears whole or not at all.
 
@@ -86,9 +86,11 @@ struct SimulationReport {
     AxisValues planned_steps{};     // 2b
     double waited_s = 0;            // for temperatures, beside the print time
     double paused_s = 0;            // by command or by the file
+    double slowed_s = 0;            // by commands for a lower speed
     StepPositions trip_steps{};     // that trips left behind
     std::vector<HeatFigures> heat;  // of the heaters that had a target
-    Diagnostics notes;              // what the file asks and a simulation passes over
+    Diagnostics
+        notes;  // what the file asks and a simulation passes over, what of the script was refused
 
     double worst_steps() const;
     bool within_limits() const;

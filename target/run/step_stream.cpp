@@ -19,9 +19,15 @@ Result<StepStream> StepStream::open(const std::string& path, const config::Print
                                     std::uint32_t first_layer) {
     Result<format::Reader> reader = open_file(path, first_layer);
     if (!reader) return reader.error();
+    return open(std::move(*reader), path, printer, filament_diameter_mm, orders);
+}
+
+Result<StepStream> StepStream::open(format::Reader reader, const std::string& path,
+                                    const config::Printer& printer, double filament_diameter_mm,
+                                    OrderQueue* orders) {
     Result<motion::Planner> planner = motion::Planner::create(motion_limits(printer));
     if (!planner) return planner.error();
-    return StepStream(path, Interpreter(std::move(*reader), printer, filament_diameter_mm),
+    return StepStream(path, Interpreter(std::move(reader), printer, filament_diameter_mm),
                       std::move(*planner), MotorSteps(printer), orders);
 }
 

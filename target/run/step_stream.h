@@ -37,6 +37,10 @@ public:
     static Result<StepStream> open(const std::string& path, const config::Printer& printer,
                                    double filament_diameter_mm, OrderQueue* orders = nullptr,
                                    std::uint32_t first_layer = 0);
+    // `path` is for messages.
+    static Result<StepStream> open(format::Reader reader, const std::string& path,
+                                   const config::Printer& printer, double filament_diameter_mm,
+                                   OrderQueue* orders);
 
     // Appends the next steps; false: these were the last.
     Result<bool> next(std::vector<Step>& steps);

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <csignal>
+#include <functional>
 
 namespace lyr::run {
 
@@ -27,5 +28,8 @@ private:
     sigset_t signals_;
     sigset_t before_;
 };
+
+// How often a stop was asked for since the last call; whoever watches a motion calls it every millisecond or so.
+using StopSource = std::function<unsigned()>;
 
 }  // namespace lyr::run

@@ -5,6 +5,9 @@
 #include <cstdio>
 #include <thread>
 
+#include "base/text.h"
+#include "target/gpio/clock.h"
+#include "target/run/buttons.h"
 #include "target/run/demands.h"
 #include "target/run/heating.h"
 #include "target/run/stop_signals.h"
@@ -13,8 +16,10 @@
 namespace lyr::run {
 namespace {
 
-// Of a heater so slow that it has not swung by then, the gains would be of no use.
-constexpr double longest_s = 2 * 3'600;
+// Of a heater so slow that a swing takes longer, or one that does not get colder than the target, there are no gains.
+constexpr double longest_swing_s = 30 * 60;
+// A room may be as warm, and without power no heater gets colder than that.
+constexpr double coldest_target_c = 30;
 constexpr int tick_ms = 100;
 
 Diagnostic failed(std::string message, ExitStatus status = ExitStatus::machine) {
@@ -26,6 +31,11 @@ Status check(const TuneJob& job) {
     const auto& heater = job.printer.heaters[job.heater];
     if (!heater) return failed("printer \"" + job.printer.name + "\" has no heater." + name);
     const auto [low_c, high_c] = std::pair(heater->guard.low_c, heater->guard.high_c);
+    if (job.target_c < coldest_target_c)
+        return failed(
+            formatted("heater %s cannot be tuned at %g °C: a heater must cool down below "
+                      "its target, too, and a room is up to %g °C warm",
+                      name.c_str(), job.target_c, coldest_target_c));
     if (job.target_c > low_c && job.target_c <= high_c - headroom_c) return Done{};
     char text[200];
     std::snprintf(text, sizeof text,
@@ -41,10 +51,16 @@ void begin(const TuneJob& job, thermal::HeatControl& control) {
                  thermal::RelayTune(job.target_c, job.printer.heaters[job.heater]->max_power));
 }
 
+// When a swing was seen last.
+struct Swings {
+    int seen = 0;
+    double since_s = 0;
+};
+
 // None: not over yet.
 std::optional<Result<thermal::TuneResult>> outcome(const TuneJob& job,
                                                    const thermal::HeatControl& control,
-                                                   double time_s) {
+                                                   double time_s, Swings& swings) {
     const thermal::RelayTune& relay = *control.relay();
     if (job.progress)
         job.progress({time_s, control.status(job.heater)->temperature_c, relay.swings(),
@@ -55,16 +71,23 @@ std::optional<Result<thermal::TuneResult>> outcome(const TuneJob& job,
         if (!result) return failed("the temperature did not swing: it follows the heater too fast");
         return *result;
     }
-    if (time_s > longest_s) return failed("the temperature did not swing within two hours");
+    if (relay.swings() != swings.seen) swings = {relay.swings(), time_s};
+    if (time_s - swings.since_s > longest_swing_s)
+        return failed(formatted(
+            "the temperature did not swing about %g °C for %g minutes and is "
+            "%.1f °C: the heater is too weak for it, or does not get colder",
+            job.target_c, longest_swing_s / 60, control.status(job.heater)->temperature_c));
     return std::nullopt;
 }
 
 Result<thermal::TuneResult> simulated(const TuneJob& job) {
     thermal::SimulatedHeat heat(job.printer, job.faults);
     begin(job, heat.control());
+    Swings swings;
     for (;;) {
         heat.advance_to(heat.time_s() + 1);
-        if (auto over = outcome(job, heat.control(), heat.time_s())) return std::move(*over);
+        if (auto over = outcome(job, heat.control(), heat.time_s(), swings))
+            return std::move(*over);
     }
 }
 
@@ -72,6 +95,8 @@ Result<thermal::TuneResult> real(const TuneJob& job) {
     const StopSignals signals;
     Result<Heating> heating = open_heating(job.printer);
     if (!heating) return heating.error();
+    Result<std::optional<Buttons>> buttons = open_buttons(job.printer);
+    if (!buttons) return buttons.error();
     begin(job, *heating->control);
     // Takes the heat away when this thread hangs at a sensor.
     const std::jthread watch([&](const std::stop_token& over) {
@@ -81,12 +106,16 @@ Result<thermal::TuneResult> real(const TuneJob& job) {
         }
     });
     const double from_s = heat_time_s();
+    Swings swings;
     for (;;) {
         heating->control->tick(heat_time_s());
         const bool is_off = heating->stage->latched() && !heating->control->trip();
         if (is_off) return failed("reading the sensors took more than 3 s; all heaters are off");
-        if (auto over = outcome(job, *heating->control, heat_time_s() - from_s))
+        if (auto over = outcome(job, *heating->control, heat_time_s() - from_s, swings))
             return std::move(*over);
+        if (*buttons && asks_for_emergency(**buttons, gpio::MonotonicClock().now_ns()))
+            return failed("the emergency line stopped it; all heaters are off",
+                          ExitStatus::stopped);
         if (signals.wait_ms(tick_ms))
             return failed("stopped on request; all heaters are off", ExitStatus::stopped);
     }

@@ -63,4 +63,13 @@ void notify(const std::string& state) {
     ::close(socket);
 }
 
+void Supervision::feed(double now_s, std::optional<std::uint32_t> ticks, const std::string& text) {
+    if (now_s < next_s_) return;
+    next_s_ = now_s + 1;
+    if (ticks && *ticks == seen_ticks_) return;
+    seen_ticks_ = ticks.value_or(0);
+    if (watchdog_) watchdog_->feed();
+    notify("WATCHDOG=1\nSTATUS=" + text);
+}
+
 }  // namespace lyr::run

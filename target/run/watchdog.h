@@ -9,7 +9,10 @@
 
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "base/diagnostic.h"
 #include "target/config/life.h"
@@ -33,5 +36,20 @@ private:
 
 // "READY=1", "WATCHDOG=1", "STATUS=..."; several with line breaks between them.
 void notify(const std::string& state);
+
+// Feeds the board's watchdog and the init system's once a second, while what they watch over goes on.
+class Supervision {
+public:
+    explicit Supervision(std::optional<Watchdog> watchdog) : watchdog_(std::move(watchdog)) {
+        notify("READY=1");
+    }
+    // `ticks` is how often that has gone round; none: nothing does.
+    void feed(double now_s, std::optional<std::uint32_t> ticks, const std::string& text);
+
+private:
+    std::optional<Watchdog> watchdog_;
+    double next_s_ = 0;
+    std::uint32_t seen_ticks_ = 0;
+};
 
 }  // namespace lyr::run

@@ -81,7 +81,7 @@ TEST_CASE("lyrrun: a print takes at most 8 MB of memory, however long it is") {
     const std::string file = write_print("memory", std::vector<Drawing>(400, draw_square));
     const Ended ended = folder.run(
         "lyrrun '" + file +
-        "' --simulate >/dev/null & p=$!\n"
+        "' --simulate --no-heat >/dev/null & p=$!\n"
         "while grep VmHWM /proc/$p/status >now 2>/dev/null && [ -s now ]; do mv now most; done\n"
         "wait $p && cat most");
     CHECK(ended.status == 0);

@@ -42,6 +42,9 @@ TEST_CASE("lyrrun --home: says what was homed and where the head is") {
     const Ended one = folder.run("lyrrun --home x --simulate --printer p.toml");
     CHECK(one.status == 0);
     CHECK(one.out.find("homed x in ") != std::string::npos);
+    // It told y and z, too, as if they had been homed.
+    CHECK(one.out.find("the head is at x 10.000 mm; where it is else was not found\n") !=
+          std::string::npos);
 }
 
 TEST_CASE("lyrrun --jog: from the start of a print, within the ranges") {

@@ -9,7 +9,7 @@ using namespace lyr::tests;
 namespace {
 
 Ended simulated(const std::string& print, const std::string& printer) {
-    return Folder("machines").run("lyrrun " + print + " --simulate --printer " + printer);
+    return Folder("machines").run("lyrrun " + print + " --simulate --no-heat --printer " + printer);
 }
 
 }  // namespace
@@ -36,8 +36,8 @@ TEST_CASE("lyrrun: a part beyond a delta's arms is refused with layer and distan
 TEST_CASE("lyrrun: a slip in a machine's keys comes with its line and the key that was meant") {
     const Folder folder("slip");
     folder.write("p.toml", "kinematics = \"delta\"\n[delta]\narm_mm = 250\nradus_mm = 120\n");
-    const Ended ended =
-        folder.run("lyrrun " + write_print("slip", {draw_square}) + " --simulate --printer p.toml");
+    const Ended ended = folder.run("lyrrun " + write_print("slip", {draw_square}) +
+                                   " --simulate --no-heat --printer p.toml");
     check_failure(ended, "lyrrun", 3, "p.toml:4");
     CHECK(ended.err.find("did you mean `radius_mm`?") != std::string::npos);
 }
@@ -56,7 +56,8 @@ TEST_CASE("lyrrun: over a crooked bed every pulse is within half a microstep of 
         if (const std::size_t at = text.find("calibration_file"); at != std::string::npos)
             text.erase(at, text.find('\n', at) - at);
         folder.write("p.toml", "calibration_file = \"calibration.toml\"\n" + text);
-        const Ended ended = folder.run("lyrrun " + print + " --simulate --printer p.toml");
+        const Ended ended =
+            folder.run("lyrrun " + print + " --simulate --no-heat --printer p.toml");
         CHECK(ended.status == 0);
         CHECK(ended.err.empty());
         CHECK(ended.out.find("within half a microstep everywhere") != std::string::npos);
@@ -74,11 +75,12 @@ TEST_CASE("lyrrun: a ratio of cruising costs time, and every pulse is within hal
             folder.write("p.toml",
                          std::string("minimum_cruise_ratio = ") + ratio + '\n' +
                              text_of(std::string(LYR_FIXTURES "/printers/") + printer + ".toml"));
-            const Ended text = folder.run("lyrrun " + print + " --simulate --printer p.toml");
+            const Ended text =
+                folder.run("lyrrun " + print + " --simulate --no-heat --printer p.toml");
             CHECK(text.status == 0);
             CHECK(text.out.find("within half a microstep everywhere") != std::string::npos);
             const Ended ended =
-                folder.run("lyrrun " + print + " --simulate --json --printer p.toml");
+                folder.run("lyrrun " + print + " --simulate --no-heat --json --printer p.toml");
             const std::string key = "\"print_time_s\":";
             const std::size_t at = ended.out.find(key);
             REQUIRE(at != std::string::npos);

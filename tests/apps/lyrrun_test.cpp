@@ -19,7 +19,8 @@ void check_failure(const Ended& ended, int status, const std::string& part) {
 }  // namespace
 
 TEST_CASE("lyrrun: a simulation reports on stdout and says nothing on a pipe's stderr") {
-    const Ended ended = lyrrun(write_print("program", {draw_square, draw_arcs}) + " --simulate");
+    const Ended ended =
+        lyrrun(write_print("program", {draw_square, draw_arcs}) + " --simulate --no-heat");
     CHECK(ended.status == 0);
     CHECK(ended.err.empty());
     CHECK(ended.out.find("within half a microstep everywhere") != std::string::npos);
@@ -27,7 +28,7 @@ TEST_CASE("lyrrun: a simulation reports on stdout and says nothing on a pipe's s
 }
 
 TEST_CASE("lyrrun: --json is one line of JSON") {
-    const Ended ended = lyrrun(write_print("json", {draw_square}) + " --simulate --json");
+    const Ended ended = lyrrun(write_print("json", {draw_square}) + " --simulate --no-heat --json");
     CHECK(ended.status == 0);
     CHECK(ended.out.starts_with("{\"file\":"));
     CHECK(std::count(ended.out.begin(), ended.out.end(), '\n') == 1);
@@ -78,7 +79,7 @@ TEST_CASE("lyrrun: a damaged byte is found") {
     const std::string bad = good + ".bad";
     std::ofstream(bad, std::ios::binary)
         .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    check_failure(lyrrun(bad + " --simulate"), 3, "");
+    check_failure(lyrrun(bad + " --simulate --no-heat"), 3, "");
     std::filesystem::remove(bad);
 }
 
@@ -87,7 +88,8 @@ TEST_CASE("lyrrun: SIGTERM ends a simulation with status 8 and without a half-wr
     const std::string file = write_print("long", std::vector<Drawing>(4000, draw_circles));
     folder.write("trace.vcd", "old");
     for (const int signal : {SIGTERM, SIGINT, SIGHUP}) {
-        const Running running(folder, {"lyrrun", file, "--simulate", "--trace", "trace.vcd"},
+        const Running running(folder,
+                              {"lyrrun", file, "--simulate", "--no-heat", "--trace", "trace.vcd"},
                               folder / "err");
         CHECK(running.wait_for([&] { return folder.files().size() == 3; }));
         CHECK(running.end(signal) == 8);
@@ -160,6 +162,9 @@ TEST_CASE(
     check_failure(folder.run("lyrrun a.lyr --tune tool=210 --simulate"), 2, "without a print");
     check_failure(folder.run("lyrrun --tune chamber=40 --simulate"), 7, "no heater.chamber");
     check_failure(folder.run("lyrrun --tune tool=274 --simulate"), 7, "range_c");
+    // It took two hours to find that out.
+    check_failure(folder.run("lyrrun --tune tool=5 --simulate"), 7,
+                  "must cool down below its target");
     check_failure(folder.run("lyrrun --tune bed=60 --printer p.toml"), 7,
                   "heater.tool.sensor.file");
     check_failure(folder.run("echo 10 no_power bed | lyrrun --tune bed=60 --simulate --faults -"),
@@ -188,19 +193,22 @@ TEST_CASE("lyrrun: a trace never takes the place of the print or of the printer'
     CHECK(text_of(folder / "a.lyr") == lyr);
     CHECK(text_of(folder / "p.toml") == printer);
     CHECK(folder.files().size() == 5);
-    CHECK(folder.run("lyrrun a.lyr --simulate --printer p.toml --trace t.vcd").status == 0);
+    CHECK(folder.run("lyrrun a.lyr --simulate --no-heat --printer p.toml --trace t.vcd").status ==
+          0);
 }
 
 TEST_CASE("lyrrun: - is standard output for the trace and standard input for the printer") {
     const Folder folder("lyrrun-streams");
     fs::copy_file(write_print("streams", {draw_square, draw_arcs}), folder / "a.lyr");
     folder.copy("printers/cartesian.toml", "p.toml");
-    const Ended named = folder.run("lyrrun a.lyr --simulate --printer p.toml --trace t.vcd");
+    const Ended named =
+        folder.run("lyrrun a.lyr --simulate --no-heat --printer p.toml --trace t.vcd");
     CHECK(named.status == 0);
     CHECK(named.err.empty());
     for (const char* name : {"-", "/dev/stdout"}) {
-        const Ended streams = folder.run(
-            "cat p.toml | lyrrun a.lyr --simulate --printer - --trace " + std::string(name));
+        const Ended streams =
+            folder.run("cat p.toml | lyrrun a.lyr --simulate --no-heat --printer - --trace " +
+                       std::string(name));
         CHECK(streams.status == 0);
         CHECK(streams.out == text_of(folder / "t.vcd"));
         CHECK(streams.err == named.out);
@@ -212,7 +220,8 @@ TEST_CASE("lyrrun: - is standard output for the trace and standard input for the
 
 TEST_CASE("lyrrun: output that cannot be written is status 6 and says why") {
     const std::string file = write_print("full", {draw_square, draw_arcs, draw_hatch});
-    check_failure(lyrrun(file + " --simulate --trace /dev/full"), 6, "No space left on device");
-    check_failure(lyrrun(file + " --simulate >/dev/full"), 6, "No space left on device");
-    check_failure(lyrrun(file + " --simulate >&-"), 6, "standard output");
+    check_failure(lyrrun(file + " --simulate --no-heat --trace /dev/full"), 6,
+                  "No space left on device");
+    check_failure(lyrrun(file + " --simulate --no-heat >/dev/full"), 6, "No space left on device");
+    check_failure(lyrrun(file + " --simulate --no-heat >&-"), 6, "standard output");
 }

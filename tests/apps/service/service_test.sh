@@ -17,6 +17,8 @@ fail() {
 [ -f "$prefix/lib/udev/rules.d/60-lyr.rules" ] || fail "the rules are not installed"
 units=$prefix/lib/systemd/system
 grep -q "^ExecStart=$prefix/bin/lyrrun %f " "$units/lyrrun@.service" || fail "the unit starts something else"
+# With another the keeper of the heaters' lines is killed where the print crashes, before it has switched them off.
+grep -q "^KillMode=process$" "$units/lyrrun@.service" || fail "the unit kills the keeper of the heaters' lines"
 
 checked=no
 if command -v systemd-analyze >/dev/null; then

@@ -70,26 +70,31 @@ TEST_CASE("server 3: who has only stopped sending gets all answers, then the end
 }
 
 TEST_CASE(
-    "server 2: one client more than there are places is told so; a place that is left is free") {
+    "server 2: sixteen silent clients kept an emergency stop out; the longest silent one gives "
+    "way") {
     Scene scene("many");
     std::vector<std::unique_ptr<Connection>> clients;
     for (std::size_t i = 0; i < Server::most_clients; ++i) {
         clients.push_back(std::make_unique<Connection>(scene.path));
         REQUIRE(json::parse(clients.back()->line()).contains("greeting"));
     }
-    Connection more(scene.path);
-    CHECK(code_of(more.line()) == "too_many_clients");
-    CHECK(more.line() == "(end)");
-    clients[3].reset();
-    bool greeted = false;
-    for (int tries = 0; tries < 500 && !greeted; ++tries) {
-        Connection again(scene.path);
-        greeted = json::parse(again.line()).contains("greeting");
-        std::this_thread::sleep_for(2ms);
-    }
-    CHECK(greeted);
-    clients[0]->send(status_line);
+    // The first has a subscription, the second has spoken: the third has been silent for longest.
+    clients[0]->send("{\"id\":1,\"command\":\"subscribe\",\"interval_s\":10}\n");
     CHECK(code_of(clients[0]->line()) == "ok");
+    clients[1]->send(status_line);
+    CHECK(code_of(clients[1]->line()) == "ok");
+    for (const std::size_t silent : {2, 3}) {
+        clients.push_back(std::make_unique<Connection>(scene.path));
+        Connection& more = *clients.back();
+        REQUIRE(json::parse(more.line()).contains("greeting"));
+        CHECK(code_of(clients[silent]->line()) == "too_many_clients");
+        CHECK(clients[silent]->line() == "(end)");
+        more.send("{\"id\":1,\"command\":\"stop\"}\n");
+        CHECK(code_of(more.line()) == "ok");
+        CHECK(scene.print.stop_requests().load() >= 2);
+    }
+    clients[15]->send(status_line);
+    CHECK(code_of(clients[15]->line()) == "ok");
 }
 
 TEST_CASE("server 1: a client that sends and never reads keeps nobody waiting") {

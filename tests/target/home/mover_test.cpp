@@ -180,7 +180,7 @@ TEST_CASE("mover 4: homed with threads on the real clock, as on a board") {
     gpio::MonotonicClock clock;
     Bench bench(3 * 80 + 17, clock);
     const run::StopSignals signals;
-    Mover mover(printer, bench, clock, &bench, &signals);
+    Mover mover(printer, bench, clock, &bench, [&] { return signals.wait_ms(0) ? 1U : 0U; });
     const auto homed = home::home(mover, printer, homable(printer));
     REQUIRE_MESSAGE(homed.ok(), homed.error().message);
     CHECK(std::abs(homed->head.x * 80 - static_cast<double>(bench.count())) <= 1.01);
@@ -192,7 +192,7 @@ TEST_CASE("mover 3: a signal brings the machine to rest, with status stopped") {
     gpio::MonotonicClock clock;
     Bench bench(1'000'000, clock);
     const run::StopSignals signals;
-    Mover mover(printer, bench, clock, &bench, &signals);
+    Mover mover(printer, bench, clock, &bench, [&] { return signals.wait_ms(0) ? 1U : 0U; });
     std::thread user([] {
         std::this_thread::sleep_for(std::chrono::milliseconds(150));
         ::kill(::getpid(), SIGTERM);

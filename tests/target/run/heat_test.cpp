@@ -293,24 +293,27 @@ TEST_CASE("heat order 3: a wait that has no end ends with all heaters off") {
                   cold.error().message);
 }
 
-TEST_CASE("simulate 4: what the printer cannot heat is told, and the motions are made cold") {
-    config::Printer printer = config::generic_printer();
-    printer.heaters[config::heater_bed].reset();
-    printer.part_fan.reset();
-    const std::string file = write_print("heat_no_bed", {[](const Pen& pen) {
-                                             pen.layer.fan(0, 1);
-                                             draw_square(pen);
-                                         }},
-                                         {}, heated(210, 60));
-    const Result<SimulationReport> report = simulated(file, "", printer);
-    REQUIRE_MESSAGE(report.ok(), message_of(report));
-    CHECK(report->heat.empty());
-    CHECK(report->within_limits());
-    REQUIRE(report->notes.size() == 3);
-    CHECK(report->notes[0].message.find("not heated") != std::string::npos);
-    CHECK(report->notes[1].message.find("fans are not switched") != std::string::npos);
-    CHECK(report->notes[2].message.find("no heater for the bed") != std::string::npos);
-    CHECK(report->notes[2].severity == Severity::warning);
+TEST_CASE("simulate 4: what a print is refused for was simulated cold, with a warning or none") {
+    const config::Printer printer = config::generic_printer();
+    config::Printer no_bed = printer;
+    no_bed.heaters[config::heater_bed].reset();
+    const auto check_refused = [](const std::string& file, const config::Printer& on,
+                                  const char* part) {
+        const Result<SimulationReport> refused = simulated(file, "", on);
+        REQUIRE_FALSE(refused.ok());
+        CHECK(refused.error().status == ExitStatus::machine);
+        CHECK_MESSAGE(refused.error().message.find(part) != std::string::npos,
+                      refused.error().message);
+        CHECK(simulate({file, on, {}, {}, {}, true}).ok());
+    };
+    check_refused(write_print("heat_no_bed", {draw_square}, {}, heated(210, 60)), no_bed,
+                  "no heater for the bed");
+    check_refused(write_print("heat_too_hot", {draw_square}, {}, heated(272, 60)), printer,
+                  "heater.tool.range_c");
+    check_refused(write_print("heat_too_cold", {draw_square}, {}, heated(100, 60)), printer,
+                  "min_extrude_c");
+    // It says nothing of heat at all.
+    check_refused(write_print("heat_never", {draw_square}), printer, "min_extrude_c");
 }
 
 TEST_CASE("executor 7: a gate holds events back until its order is done, and leaves on request") {

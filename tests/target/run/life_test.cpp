@@ -257,7 +257,12 @@ TEST_CASE("life 5: what cannot be done is refused, and the print goes on as befo
         const Result<SimulationReport> report = simulate(job);
         REQUIRE_MESSAGE(report.ok(), message_of(report));
         check_same_path(*report, *plain);
-        return control.status().message;
+        // Refusals of a script were lost without a status to look at.
+        const std::string message = control.status().message;
+        CHECK(report->notes.empty() == message.empty());
+        if (!message.empty())
+            CHECK(report->notes.back().message.find("s: " + message) != std::string::npos);
+        return message;
     };
     CHECK(refusal("4 resume") == "refused `resume`: the print does not rest");
     CHECK(refusal("4 set chamber 40") ==
@@ -265,6 +270,10 @@ TEST_CASE("life 5: what cannot be done is refused, and the print goes on as befo
     CHECK(refusal("4 set tool 271") == "refused `set tool 271`: heater tool goes up to 270 °C");
     CHECK(refusal("4 set tool 100").find("pause first") != std::string::npos);
     CHECK(refusal("4 fan 0.5").empty());
+    const Result<SimulationReport> late = simulated(cold_file(), "9999 fan 0.5");
+    REQUIRE(late.ok());
+    REQUIRE(late->notes.size() == 1);
+    CHECK(late->notes[0].message.find("1 commands of the script came after") != std::string::npos);
     config::Printer plain_printer = parking_printer();
     plain_printer.part_fan.reset();
     CHECK(objection(SetFan{1}, plain_printer) == "the printer has no part fan");
@@ -285,6 +294,10 @@ TEST_CASE("executor 9: half the speed takes twice as long, and the path is the s
     check_same_path(*slow, *plain);
     CHECK(control.status().elapsed_s == doctest::Approx(2 * plain->print_time_s).epsilon(0.03));
     CHECK(control.status().speed_factor == 0.5);
+    // The report's times were those of full speed alone.
+    CHECK(slow->slowed_s == doctest::Approx(plain->print_time_s).epsilon(0.03));
+    CHECK(text_of(*slow).find("more at the lower speed") != std::string::npos);
+    CHECK(plain->slowed_s == 0);
     CHECK(control.status().filament_mm > 0);
 }
 

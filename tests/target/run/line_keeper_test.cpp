@@ -160,6 +160,19 @@ TEST_CASE("line keeper 2: a program that goes silent loses its lines") {
     CHECK(bench.levels() == 0);
 }
 
+TEST_CASE("line keeper 2: a program that was stopped and goes on blamed its keeper") {
+    const Bench bench;
+    auto chip = bench.keep(50);
+    REQUIRE(chip.ok());
+    REQUIRE((*chip)->write(0b01, 0b01).ok());
+    REQUIRE(comes([&] { return bench.levels() == 0; }));
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    const Status late = (*chip)->write(0b01, 0b01);
+    REQUIRE_FALSE(late.ok());
+    CHECK(late.error().message.find("this program was silent") != std::string::npos);
+    CHECK(bench.levels() == 0);
+}
+
 TEST_CASE("line keeper 3: signals to the whole group do not end the keeper before the program") {
     const Bench bench;
     CHECK(ends_by(SIGKILL, [&] {

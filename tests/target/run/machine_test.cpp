@@ -48,7 +48,7 @@ config::Printer with_jerk(config::Printer printer) {
 }
 
 SimulationReport simulated(const std::string& file, const config::Printer& printer) {
-    Result<SimulationReport> report = simulate({file, printer, {}, {}, {}});
+    Result<SimulationReport> report = simulate({file, printer, {}, {}, {}, true});
     REQUIRE_MESSAGE(report.ok(), (report.ok() ? "" : to_string(report.error())));
     return *report;
 }
@@ -233,11 +233,11 @@ TEST_CASE(
 TEST_CASE("reach 2: a file beyond a delta's arms is refused before anything moves") {
     const std::string file = whole_print("beyond", {0, false, 80, 60});
     config::Printer printer = delta();
-    const Result<SimulationReport> report = simulate({file, printer, {}, {}, {}});
+    const Result<SimulationReport> report = simulate({file, printer, {}, {}, {}, true});
     REQUIRE_FALSE(report.ok());
     CHECK(report.error().status == ExitStatus::machine);
     CHECK(report.error().where.layer == 1);
     CHECK(report.error().message.find("delta.reach_mm") != std::string::npos);
     printer = crossed();
-    CHECK(simulate({file, printer, {}, {}, {}}).ok());
+    CHECK(simulate({file, printer, {}, {}, {}, true}).ok());
 }

@@ -19,7 +19,7 @@ namespace {
 SimulationReport simulated(const std::string& file,
                            const config::Printer& printer = config::generic_printer(),
                            std::optional<std::string> trace = {}) {
-    Result<SimulationReport> report = simulate({file, printer, std::move(trace), {}, {}});
+    Result<SimulationReport> report = simulate({file, printer, std::move(trace), {}, {}, true});
     REQUIRE_MESSAGE(report.ok(), (report.ok() ? "" : to_string(report.error())));
     return *report;
 }
@@ -177,12 +177,13 @@ TEST_CASE("simulate 4: the wave decodes to the same positions, with the driver's
 TEST_CASE(
     "simulate 4: an unwritable trace is an error, and a failed simulation leaves none behind") {
     const std::string file = write_print("unwritable", {draw_square});
-    const auto failed = simulate({file, config::generic_printer(), "/nonexistent/out.vcd", {}, {}});
+    const auto failed =
+        simulate({file, config::generic_printer(), "/nonexistent/out.vcd", {}, {}, true});
     REQUIRE_FALSE(failed.ok());
     CHECK(failed.error().status == ExitStatus::output);
     const std::string trace = file + ".stopped.vcd";
     const auto stopped =
-        simulate({file, config::generic_printer(), trace, {}, [] { return true; }});
+        simulate({file, config::generic_printer(), trace, {}, [] { return true; }, true});
     REQUIRE_FALSE(stopped.ok());
     CHECK(stopped.error().status == ExitStatus::stopped);
     CHECK_FALSE(std::filesystem::exists(trace));
@@ -280,7 +281,8 @@ TEST_CASE("simulate: progress tells the time that the file states for the whole 
                       config::generic_printer(),
                       {},
                       [&](const Progress& progress) { told.push_back(progress); },
-                      {}});
+                      {},
+                      true});
         REQUIRE(report.ok());
         REQUIRE(!told.empty());
         for (const Progress& progress : told) {

@@ -1,0 +1,276 @@
+// What goes before the path of a print, and what may happen meanwhile: contract of target/run/print.h, by number.
+
+#include <doctest/doctest.h>
+
+#include <atomic>
+#include <csignal>
+#include <fstream>
+#include <functional>
+#include <thread>
+
+#include "target/gpio/mock_chip.h"
+#include "target/gpio/mock_inputs.h"
+#include "target/run/print.h"
+#include "target/run/print_files.h"
+
+using namespace lyr;
+using namespace lyr::run;
+using namespace lyr::tests;
+
+namespace {
+
+constexpr std::size_t start_lines = 8;
+
+config::Printer starting_printer() {
+    config::Printer printer = config::generic_printer();
+    printer.pulse.late_limit_ns = 10'000'000'000;
+    printer.heaters = {};
+    return printer;
+}
+
+void draw_stroke(const Pen& pen) {
+    pen.path(80);
+    pen.travel(0, 0);
+    pen.line(4, 0);
+    pen.line(0, 0);
+}
+
+// Far outside of any range.
+void draw_far(const Pen& pen) {
+    pen.path(80);
+    pen.travel(0, 0);
+    pen.line(10'000, 0);
+}
+
+// As a copy over it does: the same file, other bytes.
+void overwrite(const std::string& file, const std::string& from) {
+    std::ofstream(file, std::ios::binary | std::ios::trunc)
+        << std::ifstream(from, std::ios::binary).rdbuf();
+}
+
+}  // namespace
+
+TEST_CASE("print 1: a file that was replaced after its inspection was printed uninspected") {
+    gpio::MonotonicClock clock;
+    for (const bool in_place : {false, true}) {
+        const std::string file = write_print("inspected", {draw_stroke});
+        const std::string other = write_print("not_inspected", {draw_far});
+        std::vector<gpio::LineWrite> writes;
+        gpio::MockChip chip(start_lines, clock, gpio::recorder(writes));
+        PrintJob job{file, starting_printer(), true, {}};
+        job.checked = [&](const Diagnostics&) {
+            in_place ? overwrite(file, other) : std::filesystem::rename(other, file);
+        };
+        const Result<PrintReport> refused = print(job, chip, clock);
+        REQUIRE_FALSE(refused.ok());
+        CHECK(refused.error().status == ExitStatus::input);
+        CHECK(refused.error().message.find("changed after it was inspected") != std::string::npos);
+        CHECK(writes.empty());
+    }
+}
+
+TEST_CASE("print 1: a file that is written to while it is printed brings the head to rest") {
+    const std::string file = write_print("written_to", std::vector<Drawing>(60, draw_square));
+    const std::string other = write_print("not_inspected", {draw_far});
+    gpio::MonotonicClock clock;
+    std::vector<gpio::LineWrite> writes;
+    gpio::MockChip chip(start_lines, clock, gpio::recorder(writes));
+    PrintJob job{file, starting_printer(), true, {}};
+    job.progress = [&](const Progress& now) {
+        if (now.time_s > 0.2) overwrite(file, other);
+    };
+    const Result<PrintReport> ended = print(job, chip, clock);
+    REQUIRE_FALSE(ended.ok());
+    CHECK(ended.error().message.find("changed after it was inspected") != std::string::npos);
+    CHECK(writes.back().levels == 0);
+    std::int64_t x = 0, most = 0;
+    gpio::LineMask before = 0;
+    for (const gpio::LineWrite& write : writes) {
+        if (~before & write.levels & step_bit(0)) x += write.levels & direction_bit(0) ? 1 : -1;
+        before = write.levels;
+        most = std::max(most, x);
+    }
+    CHECK(static_cast<double>(most) / job.printer.axes[0].steps_per_mm < 65);
+}
+
+namespace {
+
+// Homing, as far as its being asked to stop goes: for a second, unless it is.
+Status home_for_a_second(const StopSource& stop, unsigned& asked,
+                         const std::function<void()>& meanwhile) {
+    for (int i = 0; i < 1'000 && asked == 0; ++i) {
+        if (i == 100) meanwhile();
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        asked += stop();
+    }
+    if (asked == 0) return Done{};
+    return Diagnostic{Severity::error, ExitStatus::stopped, "stopped on request", {}};
+}
+
+struct Homed {
+    Result<PrintReport> report = PrintReport{};
+    unsigned asked = 0;
+    PrintStatus meanwhile, end;
+    std::size_t writes = 0;
+};
+
+// What `disturb` does while it homes.
+Homed print_and_disturb(const std::function<void(PrintControl&, gpio::MockInputs&)>& disturb) {
+    Homed homed;
+    config::Printer printer = starting_printer();
+    printer.inputs[config::input_emergency] = config::Pin{"gpiochip0", 20U, false};
+    gpio::MonotonicClock clock;
+    std::vector<gpio::LineWrite> writes;
+    gpio::MockChip chip(start_lines, clock, gpio::recorder(writes));
+    auto lines = std::make_unique<gpio::MockInputs>(1, clock);
+    gpio::MockInputs& input = *lines;
+    Result<Buttons> buttons = Buttons::start(printer, std::move(lines));
+    REQUIRE(buttons.ok());
+    PrintControl control;
+    PrintJob job{write_print("homing", {draw_stroke}), printer, true, {}};
+    job.control = &control;
+    bool begun = false;
+    job.begun = [&] { begun = true; };
+    job.before = [&](gpio::GpioChip&, gpio::Clock&, const StopSource& stop) {
+        CHECK(begun);
+        return home_for_a_second(stop, homed.asked, [&] {
+            homed.meanwhile = control.status();
+            disturb(control, input);
+        });
+    };
+    homed.report = print(job, chip, clock, nullptr, &*buttons);
+    homed.end = control.status();
+    homed.writes = writes.size();
+    CHECK(chip.levels() == 0);
+    return homed;
+}
+
+}  // namespace
+
+TEST_CASE("print 6, 9: an emergency was not heard while a print homes") {
+    const Homed by_line =
+        print_and_disturb([](PrintControl&, gpio::MockInputs& input) { input.set(0, true); });
+    const Homed by_command = print_and_disturb(
+        [](PrintControl& control, gpio::MockInputs&) { control.post(EmergencyStop{}); });
+    for (const Homed* homed : {&by_line, &by_command}) {
+        CHECK(homed->asked == 2);
+        CHECK(homed->meanwhile.message == "homing before the print");
+        CHECK(homed->meanwhile.layers == 1);
+        CHECK_FALSE(homed->meanwhile.is_position_known);
+        REQUIRE_FALSE(homed->report.ok());
+        CHECK(homed->report.error().status == ExitStatus::stopped);
+        CHECK(homed->report.error().message.find("emergency stop") != std::string::npos);
+        CHECK(homed->end.state == PrintState::failed);
+        CHECK(homed->writes == 1);  // the release
+    }
+}
+
+TEST_CASE("print 4, 6: a signal and a cancel stop a print that homes") {
+    const Homed by_signal =
+        print_and_disturb([](PrintControl&, gpio::MockInputs&) { std::raise(SIGTERM); });
+    const Homed by_command =
+        print_and_disturb([](PrintControl& control, gpio::MockInputs&) { control.post(Cancel{}); });
+    for (const Homed* homed : {&by_signal, &by_command}) {
+        CHECK(homed->asked == 1);
+        REQUIRE_FALSE(homed->report.ok());
+        CHECK(homed->report.error().status == ExitStatus::stopped);
+        CHECK(homed->report.error().message.find("before the path began") != std::string::npos);
+        CHECK(homed->writes == 1);
+    }
+    CHECK(by_command.report.error().message.find("cancelled") != std::string::npos);
+}
+
+TEST_CASE("print 6: what else is asked for while a print homes waits for its path") {
+    const Homed homed = print_and_disturb(
+        [](PrintControl& control, gpio::MockInputs&) { control.post(SetSpeedFactor{2}); });
+    CHECK(homed.asked == 0);
+    CHECK(homed.report.ok());
+    CHECK(homed.end.speed_factor == 2);
+}
+
+TEST_CASE("print 2: heaters were not refreshed before the path, and their keeper gave them up") {
+    config::Printer printer = starting_printer();
+    config::Heater bed = config::default_heater(config::heater_bed);
+    bed.sensor.kind = config::SensorKind::celsius;
+    bed.sensor.celsius_per_unit = 1;
+    printer.heaters[config::heater_bed] = bed;
+    std::atomic<int> reads{0};
+    std::vector<thermal::HeaterPort> ports;
+    ports.push_back({config::heater_bed, bed, std::make_unique<thermal::MockSensor>([&] {
+                         ++reads;
+                         return Result<double>(25.0);
+                     })});
+    Heating heating;
+    std::vector<thermal::Output> outputs;
+    outputs.push_back({thermal::LineOutput{0, thermal::SlowPwm(1)}, true});
+    heating.stage = std::make_unique<thermal::PowerStage>(std::move(outputs), nullptr);
+    heating.control =
+        std::make_unique<thermal::HeatControl>(std::move(ports), false, *heating.stage);
+    gpio::MonotonicClock clock;
+    gpio::MockChip chip(start_lines, clock, {});
+    PrintJob job{write_print("refreshed", {draw_stroke}), printer, false, {}};
+    int before = 0;
+    job.before = [&](gpio::GpioChip&, gpio::Clock&, const StopSource& stop) {
+        unsigned asked = 0;
+        const Status homed = home_for_a_second(stop, asked, [] {});
+        before = reads;
+        return homed;
+    };
+    CHECK(print(job, chip, clock, &heating).ok());
+    CHECK(before >= 5);
+}
+
+TEST_CASE("print: what the print warns of was said after it, and not at all if it was stopped") {
+    gpio::MonotonicClock clock;
+    gpio::MockChip chip(start_lines, clock, {});
+    PrintJob job{write_print("warned", {draw_stroke}), starting_printer(), true, {}};
+    job.journal = "/nonexistent/journal";
+    Diagnostics told;
+    job.checked = [&](const Diagnostics& notes) {
+        told = notes;
+        CHECK(chip.levels() == 0);
+    };
+    const Result<PrintReport> report = print(job, chip, clock);
+    REQUIRE(report.ok());
+    REQUIRE_FALSE(told.empty());
+    CHECK(told[0].message.find("cannot be resumed") != std::string::npos);
+    CHECK(report->told == told.size());
+    CHECK(report->warnings.size() == told.size());
+}
+
+TEST_CASE("print 7: a print that does not begin leaves no journal, and the one before as it was") {
+    const std::string file = write_print("not_begun", {draw_stroke});
+    gpio::MonotonicClock clock;
+    gpio::MockChip chip(start_lines, clock, {});
+    PrintJob job{file, starting_printer(), true, {}};
+    job.journal = file + ".journal";
+    std::filesystem::remove(job.journal);
+    job.before = [](gpio::GpioChip&, gpio::Clock&, const StopSource&) -> Status {
+        return Diagnostic{Severity::error, ExitStatus::machine, "no endstop", {}};
+    };
+    CHECK_FALSE(print(job, chip, clock).ok());
+    CHECK_FALSE(std::filesystem::exists(job.journal));
+    {
+        Result<Journal> journal = Journal::open(job.journal);
+        REQUIRE(journal.ok());
+        REQUIRE(journal->write({*identity_of(file), 3, 6, 0, {}, {}}).ok());
+    }
+    CHECK_FALSE(print(job, chip, clock).ok());
+    const auto kept = read_journal(job.journal);
+    REQUIRE(kept.ok());
+    REQUIRE(kept->has_value());
+    CHECK((*kept)->layer == 3);
+}
+
+TEST_CASE("inspect 2: a path too slow for the format began to print, and ended in a riddle") {
+    const std::string file = write_print("still", {draw_stroke, [](const Pen& pen) {
+                                                       pen.path(0.0001);
+                                                       pen.travel(0, 0);
+                                                       pen.line(4, 0);
+                                                   }});
+    const Result<Inspection> refused = inspect(file, starting_printer());
+    REQUIRE_FALSE(refused.ok());
+    CHECK(refused.error().status == ExitStatus::input);
+    CHECK(refused.error().where.layer == 2);
+    CHECK(refused.error().message.find("steps of 0.01 mm/s") != std::string::npos);
+}
