@@ -12,8 +12,6 @@
 namespace lyr::run {
 namespace {
 
-constexpr double um_per_mm = 1e3, nm_per_mm = 1e6;
-
 std::string name_of(std::size_t heater) {
     return std::string(config::heater_names[heater]);
 }
@@ -125,6 +123,10 @@ void Life::rest_for(Command reason) {
 }
 
 void Life::unload() {
+    if (!course_.started.load()) {
+        message_ = "filament is changed once the path has begun; the print rests";
+        return;
+    }
     if (!can_push()) {
         message_ = "the tool is too cold to move filament: heat it, or change it by hand";
         return;
@@ -146,6 +148,17 @@ void Life::resume() {
     standby_.fill(false);
     desk_.set_standby(standby_);
     phase_ = Phase::heating;
+    heating_since_s_.reset();
+}
+
+// What has not come by then never will, and nobody may be there.
+void Life::give_up_heating() {
+    message_ =
+        "the heaters have not reached their targets within an hour and are off; the print rests";
+    standby_.fill(true);
+    desk_.set_standby(standby_);
+    phase_ = Phase::resting;
+    rest_since_s_ = now_s_ - std::max(printer_.pause.tool_off_s, printer_.pause.bed_off_s);
 }
 
 void Life::set_temperature(const SetTemperature& set) {
@@ -168,6 +181,10 @@ void Life::advance() {
     if (phase_ == Phase::parking && !travels) return parked();
     if (phase_ == Phase::resting) return rest();
     if (phase_ == Phase::heating && desk_.settled()) return go_back();
+    if (phase_ == Phase::heating) {
+        if (!heating_since_s_) heating_since_s_ = now_s_;
+        if (now_s_ - *heating_since_s_ >= longest_wait_s) return give_up_heating();
+    }
     if (phase_ == Phase::returning && !travels) return returned();
 }
 
@@ -236,7 +253,7 @@ motion::Point Life::head() const {
 
 void Life::keep_journal(JournalWriter* journal, const FileIdentity& identity) {
     journal_ = journal;
-    noted_ = {identity, layer_, print_.layers, 0, {}, {}};
+    noted_ = {identity, layer_, print_.layers, 0, rest_nm(), {}};
     // What an earlier print left there must not be resumed any more.
     if (journal_) journal_->post(noted_);
 }
@@ -246,7 +263,12 @@ void Life::begin_with(const Resumption& resumption, bool is_lifted) {
         if (const auto heater = heater_number(target.heater))
             desk_.set_target(*heater, target.target_c);
     layer_ = resumption.first_layer + 1;
-    if (!is_lifted) lift_from_mm_ = resumption.stopped_z_mm;
+    parked_at_ = {printer_.start_mm[0], printer_.start_mm[1], printer_.start_mm[2]};
+    if (!is_lifted) {
+        parked_at_.z = resumption.stopped_z_mm;
+        lift_from_mm_ = resumption.stopped_z_mm;
+    }
+    left_at_ = parked_at_;
     course_.wanted_pace.store(0);
     phase_ = Phase::heating;
 }
@@ -268,12 +290,20 @@ void Life::hear_of_journal() {
     message_ = error->message;
 }
 
+// A height that is too low prints in the air; one that is too high would drive the nozzle into the part. So it is
+// parked from when it has arrived to well before it leaves, and before the path where it was found.
+std::optional<std::int64_t> Life::rest_nm() const {
+    const bool has_not_left = phase_ == Phase::heating && !course_.started.load();
+    if (phase_ != Phase::resting && !has_not_left) return std::nullopt;
+    return std::llround(parked_at_.z * nm_per_mm);
+}
+
 void Life::note() {
     if (!journal_) return;
     hear_of_journal();
     JournalEntry entry = noted_;
     entry.layer = layer_;
-    entry.rest_nm.reset();
+    entry.rest_nm = rest_nm();
     // Over a crooked bed the height of the head depends on its place, which is worth a write now and then.
     constexpr double place_interval_s = 1;
     if (!printer_.mesh.heights_mm.empty() && now_s_ - noted_s_ >= place_interval_s) {
@@ -281,12 +311,7 @@ void Life::note() {
         entry.place_um = {static_cast<std::int32_t>(std::lround(on_path.x * um_per_mm)),
                           static_cast<std::int32_t>(std::lround(on_path.y * um_per_mm))};
     }
-    // A height that is too low prints in the air; one that is too high would drive the nozzle into the part. So it is
-    // parked from when it has arrived to well before it leaves.
-    if (phase_ == Phase::resting) {
-        entry.rest_nm = std::llround(parked_at_.z * nm_per_mm);
-        entry.place_um.reset();
-    }
+    if (entry.rest_nm) entry.place_um.reset();
     if (entry != noted_) post(entry);
 }
 

@@ -9,7 +9,8 @@
 //     resumes goes back the same way. All in all no motor has moved then, but the extruder's by what a change of filament
 //     purges, and the path goes on with the event at which it was left.
 //  2. Filament is moved only if the tool has min_extrude_c, before a resume it is heated and waited for. A tool that was set
-//     to less in a pause must be set to more before it.
+//     to less in a pause must be set to more before it. Heat that has not come within an hour is taken away, and the print
+//     rests on.
 //  3. A pause that lasts for longer than printer.toml says lets tool, bed and chamber go cold.
 //  4. A cancel takes all heat away, parks too, and ends by a request to stop; an emergency stop does so at once, and calls
 //     `cut`.
@@ -100,6 +101,9 @@ private:
     void lift();
     void note();
     void post(const JournalEntry& entry);
+    // Of a head that stands still away from the path.
+    std::optional<std::int64_t> rest_nm() const;
+    void give_up_heating();
     void hear_of_journal();
     motion::Point head() const;
     void returned();
@@ -124,6 +128,7 @@ private:
     Command reason_ = Pause{};       // of the rest
     std::optional<double> begun_s_;  // the first tick
     double now_s_ = 0, left_since_s_ = 0, rest_since_s_ = 0, paused_s_ = 0;
+    std::optional<double> heating_since_s_;         // for going on
     double speed_factor_ = 1, planned_factor_ = 1;  // wanted, and of the path where the head is
     Trip trip_;                                     // while the motion makes it
     motion::Point left_at_, parked_at_;
