@@ -11,6 +11,7 @@
 #include "target/run/journal.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -149,6 +150,12 @@ Result<Journal> Journal::open(const std::string& path) {
     constexpr mode_t for_all_to_read = 0644;
     const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, for_all_to_read);
     if (descriptor < 0) return failed(ExitStatus::output, "cannot write the journal", path);
+    if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+        const Diagnostic busy =
+            failed(ExitStatus::output, "another print of this file keeps the journal", path);
+        ::close(descriptor);
+        return busy;
+    }
     sync_folder_of(path);
     const std::optional<Numbered> before = latest(descriptor);
     return Journal(path, descriptor, before ? before->sequence : 0);

@@ -48,7 +48,8 @@ Result<std::optional<JournalEntry>> read_journal(const std::string& path);
 
 class Journal {
 public:
-    // Makes the file, or goes on after the entries that it has. Errors (status output).
+    // Makes the file, or goes on after the entries that it has. Nobody else can until this one and what was forked with it
+    // have ended. Errors (status output).
     static Result<Journal> open(const std::string& path);
     Journal(Journal&& other) noexcept;
     Journal& operator=(Journal&&) = delete;

@@ -156,6 +156,21 @@ TEST_CASE("journal 1: a file of something else is no journal, and what cannot be
     CHECK(to_string(refused.error()).find("/nonexistent/folder/journal") != std::string::npos);
 }
 
+TEST_CASE("journal: two printers that printed the same file wrote into one journal") {
+    const Bench bench;
+    {
+        Result<Journal> first = Journal::open(bench.path);
+        REQUIRE(first.ok());
+        REQUIRE(first->write(entry_of(5)).ok());
+        const Result<Journal> second = Journal::open(bench.path);
+        REQUIRE(!second.ok());
+        CHECK(second.error().message.find("another print of this file") != std::string::npos);
+        CHECK(bench.read() == entry_of(5));
+    }
+    CHECK(Journal::open(bench.path).ok());
+    CHECK(bench.read() == entry_of(5));
+}
+
 TEST_CASE("journal 2, 3: a full disk is told once, from either side") {
     // What is written there finds no room.
     Result<Journal> full = Journal::open("/dev/full");
