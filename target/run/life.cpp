@@ -151,14 +151,16 @@ void Life::resume() {
     heating_since_s_.reset();
 }
 
-// What has not come by then never will, and nobody may be there.
-void Life::give_up_heating() {
+void Life::wait_for_heat() {
+    if (desk_.settled()) return go_back();
+    if (!heating_since_s_) heating_since_s_ = now_s_;
+    if (now_s_ - *heating_since_s_ < longest_wait_s) return;
+    // What has not come by then never will, and nobody may be there.
     message_ =
         "the heaters have not reached their targets within an hour and are off; the print rests";
-    standby_.fill(true);
-    desk_.set_standby(standby_);
     phase_ = Phase::resting;
     rest_since_s_ = now_s_ - std::max(printer_.pause.tool_off_s, printer_.pause.bed_off_s);
+    rest();
 }
 
 void Life::set_temperature(const SetTemperature& set) {
@@ -180,11 +182,7 @@ void Life::advance() {
     if (phase_ == Phase::braking && rests) return park();
     if (phase_ == Phase::parking && !travels) return parked();
     if (phase_ == Phase::resting) return rest();
-    if (phase_ == Phase::heating && desk_.settled()) return go_back();
-    if (phase_ == Phase::heating) {
-        if (!heating_since_s_) heating_since_s_ = now_s_;
-        if (now_s_ - *heating_since_s_ >= longest_wait_s) return give_up_heating();
-    }
+    if (phase_ == Phase::heating) return wait_for_heat();
     if (phase_ == Phase::returning && !travels) return returned();
 }
 
@@ -264,22 +262,18 @@ void Life::begin_with(const Resumption& resumption, bool is_lifted) {
             desk_.set_target(*heater, target.target_c);
     layer_ = resumption.first_layer + 1;
     parked_at_ = {printer_.start_mm[0], printer_.start_mm[1], printer_.start_mm[2]};
-    if (!is_lifted) {
-        parked_at_.z = resumption.stopped_z_mm;
-        lift_from_mm_ = resumption.stopped_z_mm;
-    }
-    left_at_ = parked_at_;
+    if (!is_lifted) parked_at_.z = resumption.stopped_z_mm;
+    is_to_lift_ = !is_lifted;
     course_.wanted_pace.store(0);
     phase_ = Phase::heating;
 }
 
 // Before the path: the drivers are switched on by it.
 void Life::lift() {
-    motion::Point from{printer_.start_mm[0], printer_.start_mm[1], *lift_from_mm_};
-    lift_from_mm_.reset();
-    const Leg leg{{from.x, from.y, printer_.start_mm[2]}, 0, printer_.pause.speed_mm_s};
+    is_to_lift_ = false;
+    const Leg leg{{parked_at_.x, parked_at_.y, printer_.start_mm[2]}, 0, printer_.pause.speed_mm_s};
     course_.levels.store(line_layout(printer_).enable);
-    make(std::span(&leg, 1), from);
+    make(std::span(&leg, 1), parked_at_);
 }
 
 void Life::hear_of_journal() {
@@ -341,7 +335,7 @@ void Life::press(std::size_t input) {
 void Life::go_back() {
     if (cancels()) return parked();
     phase_ = Phase::returning;
-    if (lift_from_mm_) return lift();
+    if (is_to_lift_) return lift();
     if (!course_.started.load()) return;
     const double filament_mm_s = printer_.axes[config::axis_e].max_speed_mm_s;
     const config::FilamentSettings& filament = printer_.filament;

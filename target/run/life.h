@@ -103,7 +103,8 @@ private:
     void post(const JournalEntry& entry);
     // Of a head that stands still away from the path.
     std::optional<std::int64_t> rest_nm() const;
-    void give_up_heating();
+    // Before going back, and not for ever.
+    void wait_for_heat();
     void hear_of_journal();
     motion::Point head() const;
     void returned();
@@ -143,8 +144,8 @@ private:
     JournalEntry noted_;
     double noted_s_ = 0;
     std::optional<Diagnostic> journal_error_;
-    std::optional<double> lift_from_mm_;  // a height: before the path begins
-    StepPositions lifted_steps_{};        // by that lift
+    bool is_to_lift_ = false;       // before the path begins
+    StepPositions lifted_steps_{};  // by that lift
     std::string message_;
     std::optional<std::string> ended_by_;
 };
