@@ -17,6 +17,7 @@
 
 #include "target/gpio/mock_chip.h"
 #include "target/gpio/mock_inputs.h"
+#include "target/run/patient_printer.h"
 #include "target/run/print.h"
 #include "target/run/print_files.h"
 #include "target/run/watchdog.h"
@@ -30,13 +31,7 @@ namespace {
 constexpr std::int64_t ms = 1'000'000;
 
 config::Printer buttoned_printer() {
-    config::Printer printer = config::generic_printer();
-    printer.pulse.late_limit_ns = 10'000'000'000;
-    printer.heaters = {};
-    // Real time is not spent on the way.
-    printer.start_mm = {35, 25, 0};
-    printer.pause.lift_mm = 0.3;
-    printer.pause.retract_mm = 0.2;
+    config::Printer printer = nearby_printer();
     printer.filament = {0.5, 0.5, 0.5, 20};
     for (std::uint32_t i = 0; i < config::input_count; ++i)
         printer.inputs[i] = config::Pin{"gpiochip0", 20 + i, false};

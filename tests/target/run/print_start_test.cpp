@@ -10,6 +10,7 @@
 
 #include "target/gpio/mock_chip.h"
 #include "target/gpio/mock_inputs.h"
+#include "target/run/patient_printer.h"
 #include "target/run/print.h"
 #include "target/run/print_files.h"
 
@@ -20,13 +21,6 @@ using namespace lyr::tests;
 namespace {
 
 constexpr std::size_t start_lines = 8;
-
-config::Printer starting_printer() {
-    config::Printer printer = config::generic_printer();
-    printer.pulse.late_limit_ns = 10'000'000'000;
-    printer.heaters = {};
-    return printer;
-}
 
 void draw_stroke(const Pen& pen) {
     pen.path(80);
@@ -57,7 +51,7 @@ TEST_CASE("print 1: a file that was replaced after its inspection was printed un
         const std::string other = write_print("not_inspected", {draw_far});
         std::vector<gpio::LineWrite> writes;
         gpio::MockChip chip(start_lines, clock, gpio::recorder(writes));
-        PrintJob job{file, starting_printer(), true, {}};
+        PrintJob job{file, patient_printer(), true, {}};
         job.checked = [&](const Diagnostics&) {
             in_place ? overwrite(file, other) : std::filesystem::rename(other, file);
         };
@@ -75,7 +69,7 @@ TEST_CASE("print 1: a file that is written to while it is printed brings the hea
     gpio::MonotonicClock clock;
     std::vector<gpio::LineWrite> writes;
     gpio::MockChip chip(start_lines, clock, gpio::recorder(writes));
-    PrintJob job{file, starting_printer(), true, {}};
+    PrintJob job{file, patient_printer(), true, {}};
     job.progress = [&](const Progress& now) {
         if (now.time_s > 0.2) overwrite(file, other);
     };
@@ -117,7 +111,7 @@ struct Homed {
 // What `disturb` does while it homes.
 Homed print_and_disturb(const std::function<void(PrintControl&, gpio::MockInputs&)>& disturb) {
     Homed homed;
-    config::Printer printer = starting_printer();
+    config::Printer printer = patient_printer();
     printer.inputs[config::input_emergency] = config::Pin{"gpiochip0", 20U, false};
     gpio::MonotonicClock clock;
     std::vector<gpio::LineWrite> writes;
@@ -189,7 +183,7 @@ TEST_CASE("print 6: what else is asked for while a print homes waits for its pat
 }
 
 TEST_CASE("print 2: heaters were not refreshed before the path, and their keeper gave them up") {
-    config::Printer printer = starting_printer();
+    config::Printer printer = patient_printer();
     config::Heater bed = config::default_heater(config::heater_bed);
     bed.sensor.kind = config::SensorKind::celsius;
     bed.sensor.celsius_per_unit = 1;
@@ -223,7 +217,7 @@ TEST_CASE("print 2: heaters were not refreshed before the path, and their keeper
 TEST_CASE("print: what the print warns of was said after it, and not at all if it was stopped") {
     gpio::MonotonicClock clock;
     gpio::MockChip chip(start_lines, clock, {});
-    PrintJob job{write_print("warned", {draw_stroke}), starting_printer(), true, {}};
+    PrintJob job{write_print("warned", {draw_stroke}), patient_printer(), true, {}};
     job.journal = "/nonexistent/journal";
     Diagnostics told;
     job.checked = [&](const Diagnostics& notes) {
@@ -242,7 +236,7 @@ TEST_CASE("print 7: a print that does not begin leaves no journal, and the one b
     const std::string file = write_print("not_begun", {draw_stroke});
     gpio::MonotonicClock clock;
     gpio::MockChip chip(start_lines, clock, {});
-    PrintJob job{file, starting_printer(), true, {}};
+    PrintJob job{file, patient_printer(), true, {}};
     job.journal = file + ".journal";
     std::filesystem::remove(job.journal);
     job.before = [](gpio::GpioChip&, gpio::Clock&, const StopSource&) -> Status {
@@ -268,7 +262,7 @@ TEST_CASE("inspect 2: a path too slow for the format began to print, and ended i
                                                        pen.travel(0, 0);
                                                        pen.line(4, 0);
                                                    }});
-    const Result<Inspection> refused = inspect(file, starting_printer());
+    const Result<Inspection> refused = inspect(file, patient_printer());
     REQUIRE_FALSE(refused.ok());
     CHECK(refused.error().status == ExitStatus::input);
     CHECK(refused.error().where.layer == 2);

@@ -13,6 +13,7 @@
 #include "target/run/event_ring.h"
 #include "target/run/event_stream.h"
 #include "target/run/executor.h"
+#include "target/run/patient_printer.h"
 #include "target/run/print_files.h"
 #include "target/run/stop_signals.h"
 
@@ -21,14 +22,6 @@ using namespace lyr::run;
 using namespace lyr::tests;
 
 namespace {
-
-// Machines that run tests are busy and not real-time; what is tested is not how late they are.
-config::Printer patient_printer() {
-    config::Printer printer = config::generic_printer();
-    printer.pulse.late_limit_ns = 10'000'000'000;
-    printer.heaters = {};
-    return printer;
-}
 
 std::vector<LineEvent> events_of(const std::string& file, const config::Printer& printer) {
     Result<EventStream> stream = EventStream::open(file, printer, 1.75);

@@ -12,6 +12,7 @@
 #include <fstream>
 
 #include "target/gpio/mock_chip.h"
+#include "target/run/patient_printer.h"
 #include "target/run/print.h"
 #include "target/run/print_files.h"
 
@@ -22,17 +23,6 @@ using namespace lyr::tests;
 namespace {
 
 constexpr std::size_t line_count = 8;
-
-config::Printer patient_printer() {
-    config::Printer printer = config::generic_printer();
-    printer.pulse.late_limit_ns = 10'000'000'000;
-    printer.heaters = {};
-    // Real time is not spent on the way.
-    printer.start_mm = {35, 25, 0};
-    printer.pause.lift_mm = 0.3;
-    printer.pause.retract_mm = 0.2;
-    return printer;
-}
 
 void draw_small(const Pen& pen) {
     pen.path(80);
@@ -127,7 +117,7 @@ TEST_CASE(
 // A line of 3 mm in 1.5 s over a bed that rises by 0.02 mm for each mm: 24 steps of z.
 TEST_CASE(
     "resumption 4: a print cut in the middle of a layer over a bed mesh was off by the bed's") {
-    config::Printer printer = patient_printer();
+    config::Printer printer = nearby_printer();
     printer.mesh.area_mm = {0, 0, 200, 200};
     printer.mesh.heights_mm = {{0, 4}, {0, 4}};
     const std::string file = write_print("cut", {[](const Pen& pen) {
@@ -200,7 +190,7 @@ TEST_CASE("resumption 2: no journal, or another file, is refused") {
 
 TEST_CASE(
     "print 7: a print that is killed at any time leaves a journal; done or cancelled leaves none") {
-    const config::Printer printer = patient_printer();
+    const config::Printer printer = nearby_printer();
     const std::string file = write_print("journalled", std::vector<Drawing>(3, draw_small));
     const std::string journal = file + ".journal";
     std::filesystem::remove(journal);
@@ -239,7 +229,7 @@ TEST_CASE(
 }
 
 TEST_CASE("print 7: a journal that cannot be written is a warning, and the print is made") {
-    const config::Printer printer = patient_printer();
+    const config::Printer printer = nearby_printer();
     const std::string file = write_print("no_journal", {draw_small});
     gpio::MonotonicClock clock;
     gpio::MockChip chip(line_count, clock, {});
@@ -260,7 +250,7 @@ TEST_CASE("print 7: a journal that cannot be written is a warning, and the print
 }
 
 TEST_CASE("print 6: pauses, in a real print's threads, leave the path as it is") {
-    const config::Printer printer = patient_printer();
+    const config::Printer printer = nearby_printer();
     const std::string file = write_print("paused", std::vector<Drawing>(2, draw_small));
     const auto path_of = [&](bool pauses) {
         gpio::MonotonicClock clock;
