@@ -8,7 +8,6 @@
 #include <array>
 #include <charconv>
 #include <map>
-#include <thread>
 
 #include "base/read_text.h"
 #include "base/text.h"
@@ -270,7 +269,7 @@ void Check::watchdog() {
 
 Diagnostics try_privileges() {
     Diagnostics refused;
-    std::thread([&refused] { run::take_precedence({}, refused); }).join();
+    run::try_precedence({}, refused);
     run::lock_memory(refused);
     return refused;
 }

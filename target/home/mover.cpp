@@ -168,11 +168,12 @@ Result<bool> Mover::execute_beside(run::Executor& executor, std::span<const run:
         finished.store(true);
     });
     const auto look = [&] {
-        if (watch_)
+        if (watch_) {
             (void)watch_->inputs().wait_ns(look_ns);
-        else
+            watch_->poll(clock_.now_ns());
+        } else {
             std::this_thread::sleep_for(std::chrono::nanoseconds(look_ns));
-        if (watch_) watch_->poll(clock_.now_ns());
+        }
         stop += asked();
     };
     while (!finished.load()) look();

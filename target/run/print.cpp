@@ -37,7 +37,6 @@ constexpr std::chrono::microseconds executor_nap{50};
 // How soon a command is served.
 constexpr int signal_wait_ms = 20;
 constexpr double progress_s = 0.1;
-constexpr double ns_per_us = 1e3;
 
 // What the threads share.
 struct Shared {
@@ -272,8 +271,7 @@ Result<Prepared> prepare(const PrintJob& job) {
     open_journal(job, prepared);
     if (const Status same = prepared.file.check(); !same) return same.error();
     lock_memory(prepared.notes);
-    // As the real-time thread will.
-    std::thread([&] { take_precedence(job.printer.timing.cpu, prepared.notes); }).join();
+    try_precedence(job.printer.timing.cpu, prepared.notes);
     return prepared;
 }
 

@@ -72,6 +72,10 @@ void take_precedence(std::optional<unsigned> cpu, Diagnostics& warnings) {
             refused("real-time scheduling", error, "grant CAP_SYS_NICE or raise `ulimit -r`"));
 }
 
+void try_precedence(std::optional<unsigned> cpu, Diagnostics& warnings) {
+    std::thread([&] { take_precedence(cpu, warnings); }).join();
+}
+
 Status check_cpu(std::optional<unsigned> cpu) {
     if (!cpu) return Done{};
     int error = 0;

@@ -21,6 +21,8 @@ void lock_memory(Diagnostics& warnings);
 
 // Puts the calling thread before all ordinary ones (SCHED_FIFO), and on that processor alone; none: on any.
 void take_precedence(std::optional<unsigned> cpu, Diagnostics& warnings);
+// What a thread that takes it would be told; this one stays as it is.
+void try_precedence(std::optional<unsigned> cpu, Diagnostics& warnings);
 
 Status check_cpu(std::optional<unsigned> cpu);
 

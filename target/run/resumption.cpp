@@ -11,8 +11,6 @@
 namespace lyr::run {
 namespace {
 
-constexpr double um_per_mm = 1e3, nm_per_mm = 1e6;
-
 Diagnostic refused(std::string message, const std::string& file) {
     return {Severity::error, ExitStatus::input, std::move(message), {.file = file}};
 }

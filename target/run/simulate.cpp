@@ -254,9 +254,11 @@ Result<Heed> heed(const Inspection& inspection, const SimulationJob& job) {
     Heed result;
     const Status possible =
         check_demands(inspection, job.printer, job.no_heat, result.notes, lives(job));
-    if (!possible && possible.error().status != ExitStatus::unsupported) return possible.error();
-    if (!possible) result.notes.push_back(possible.error());
-    if (!possible) result.notes.back().severity = Severity::warning;
+    if (!possible) {
+        if (possible.error().status != ExitStatus::unsupported) return possible.error();
+        result.notes.push_back(possible.error());
+        result.notes.back().severity = Severity::warning;
+    }
     result.heats = !job.no_heat && !inspection.demands.hottest.empty();
     return result;
 }

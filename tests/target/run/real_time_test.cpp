@@ -6,9 +6,9 @@
 #include <sched.h>
 
 #include <bitset>
-#include <thread>
 
 #include "target/gpio/mock_chip.h"
+#include "target/run/patient_printer.h"
 #include "target/run/print.h"
 #include "target/run/print_files.h"
 
@@ -49,9 +49,7 @@ PrintJob job_on(unsigned cpu) {
         pen.line(4, 0);
         pen.line(4, 4);
     };
-    PrintJob job{write_print("real_time", {draw}), config::generic_printer(), true, {}};
-    job.printer.pulse.late_limit_ns = 10'000'000'000;
-    job.printer.heaters = {};
+    PrintJob job{write_print("real_time", {draw}), patient_printer(), true, {}};
     job.printer.timing.cpu = cpu;
     return job;
 }
@@ -84,7 +82,7 @@ TEST_CASE("real time 2: a processor that the board lacks is refused before a lin
     CHECK(report.error().message.starts_with("timing.cpu = 1023: "));
     CHECK(chip.used.none());
     Diagnostics warnings;
-    std::thread([&] { take_precedence(no_such_cpu, warnings); }).join();
+    try_precedence(no_such_cpu, warnings);
     REQUIRE_FALSE(warnings.empty());
     CHECK(warnings.front().severity == Severity::warning);
 }
