@@ -67,7 +67,7 @@ TEST_CASE("steps 1, 2: lines and arcs of all sizes, against a bisection of the i
     MESSAGE("largest error of a step's time: ", static_cast<double>(worst_ns), " ns");
 }
 
-TEST_CASE("steps 1, 2: circles from 0.05 to 200 mm") {
+TEST_CASE("steps 1, 2: circles from 0.05 to 200 mm" * doctest::test_suite("long")) {
     for (const double radius_mm : {0.05, 0.3, 2.0, 15.0, 60.0, 200.0})
         for (const bool counter_clockwise : {true, false})
             for (const double angle : {0.0, 0.7, pi / 2, 3.0}) {

@@ -90,7 +90,8 @@ TEST_CASE("timed 1, 2: crossed belts and a delta, on lines and arcs of all sizes
     MESSAGE("largest error of a step's time: ", static_cast<double>(worst_ns), " ns");
 }
 
-TEST_CASE("timed 1, 2: with shapers, pressure advance and a limit of jerk") {
+TEST_CASE("timed 1, 2: with shapers, pressure advance and a limit of jerk" *
+          doctest::test_suite("long")) {
     Shaping shaping;
     for (std::size_t axis = 0; axis < 3; ++axis)
         shaping.axes[axis] = taps_of(Shaper{ShaperKind::mzv, 40, 0.1}, axis);
