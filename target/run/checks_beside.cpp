@@ -3,15 +3,13 @@
 namespace lyr::run {
 
 ChecksBeside::ChecksBeside(const config::Printer& printer, CurveSource source)
-    : checks_(printer, std::move(source)), thread_([this] { work(); }) {}
+    : checks_(printer, std::move(source)), thread_([this] {
+          while (const std::optional<Batch> batch = waiting_.pop()) check(*batch);
+      }) {}
 
 ChecksBeside::~ChecksBeside() {
     if (!thread_.joinable()) return;
-    {
-        const std::lock_guard lock(mutex_);
-        gives_up_ = true;
-    }
-    changed_.notify_all();
+    waiting_.shut();
     thread_.join();
 }
 
@@ -25,36 +23,15 @@ void ChecksBeside::expect(std::span<const motion::PlannedMove> moves,
 
 Status ChecksBeside::finish(const StepPositions& positions) {
     hand_over();
-    {
-        const std::lock_guard lock(mutex_);
-        ends_ = true;
-    }
-    changed_.notify_all();
+    waiting_.close();
     thread_.join();
     return checks_.finish(positions);
 }
 
 void ChecksBeside::hand_over() {
-    {
-        std::unique_lock lock(mutex_);
-        changed_.wait(lock, [this] { return waiting_.size() < most_waiting; });
-        waiting_.push_back(std::move(batch_));
-    }
-    changed_.notify_all();
+    waiting_.push(std::move(batch_));
     batch_ = {};
-}
-
-void ChecksBeside::work() {
-    for (;;) {
-        std::unique_lock lock(mutex_);
-        changed_.wait(lock, [this] { return !waiting_.empty() || ends_ || gives_up_; });
-        if (gives_up_ || waiting_.empty()) return;
-        const Batch batch = std::move(waiting_.front());
-        waiting_.pop_front();
-        lock.unlock();
-        changed_.notify_all();
-        check(batch);
-    }
+    batch_.steps.reserve(2 * steps_in_batch);
 }
 
 void ChecksBeside::check(const Batch& batch) {

@@ -8,12 +8,10 @@
 
 #pragma once
 
-#include <condition_variable>
-#include <deque>
-#include <mutex>
 #include <thread>
 #include <vector>
 
+#include "target/run/handover.h"
 #include "target/run/step_checks.h"
 
 namespace lyr::run {
@@ -50,17 +48,13 @@ private:
     };
 
     void hand_over();
-    void work();
     void check(const Batch& batch);
     void check(std::span<const Step> steps);
 
     StepChecks checks_;
     StepPositions positions_{};  // as the checks have seen them
     Batch batch_;
-    std::mutex mutex_;
-    std::condition_variable changed_;
-    std::deque<Batch> waiting_;
-    bool ends_ = false, gives_up_ = false;
+    Handover<Batch> waiting_{most_waiting};
     std::thread thread_;
 };
 

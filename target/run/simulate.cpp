@@ -1,27 +1,31 @@
-// The chain is that of a print; at its end the mock's observer decodes the lines and hands each step to
-// the two checks, which have a thread of their own.
+// The chain is that of a print; its begin has a thread of its own. At its end the mock's observer decodes the lines and
+// hands each step to the two checks, which have one, too.
 
 #include "target/run/simulate.h"
 
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 
 #include "base/constants.h"
 #include "base/text.h"
 #include "target/gpio/tracing_chip.h"
 #include "target/run/checks_beside.h"
 #include "target/run/demands.h"
-#include "target/run/event_stream.h"
 #include "target/run/executor.h"
 #include "target/run/heating.h"
 #include "target/run/life.h"
 #include "target/run/simulated_clock.h"
+#include "target/run/stream_beside.h"
 
 namespace lyr::run {
 namespace {
 
 // Progress and stop are asked for after so many batches of events.
 constexpr std::uint64_t batches_between_questions = 64;
+
+// Where anybody may ask for more speed, so much is made at once, as in a print.
+constexpr std::int64_t heeded_within_ns = 500'000'000;
 
 Diagnostic stopped() {
     return {Severity::error, ExitStatus::stopped, "the simulation was stopped on request", {}};
@@ -73,7 +77,8 @@ public:
           clock_(heat_, attendant_, control_.stop_requests()),
           life_(job.printer, control_, course_, layers_, desk_,
                 {job.file, inspection.totals.layers, inspection.header.summary.estimated_time_s}),
-          stream_(std::move(stream)),
+          stream_(std::move(stream), course_.plan_factor,
+                  is_lived() ? heeded_within_ns : std::numeric_limits<std::int64_t>::max()),
           file_(std::move(file)),
           checks_(job.printer, [this](PathCurve& curve) { return file_.next(curve); }),
           decoder_([this](const DecodedStep& step) { checks_.step(step); }),
@@ -90,7 +95,6 @@ public:
             heat_.observe(
                 [this](double time_s) { job_.heat_watch(time_s, heat_.any_heater_on()); });
         if (job.resumption) life_.begin_with(*job.resumption, false);
-        stream_.heed_speed(course_.plan_factor);
         if (is_lived()) clock_.on_tick = [this](double time_s) { live(time_s); };
     }
 
@@ -130,7 +134,9 @@ private:
     StepPositions trip_steps_{};
     bool is_derailed_ = false;  // a write failed
     const Executor* executor_ = nullptr;
-    EventStream stream_;
+    StreamBeside stream_;
+    std::uint32_t layer_ = 0;
+    std::int64_t shift_ns_ = 0;
     FilePath file_;
     ChecksBeside checks_;
     PulseDecoder decoder_;
@@ -164,19 +170,19 @@ Status Simulation::run(ReplaceFile* trace) {
 }
 
 Status Simulation::pump(Executor& executor, ReplaceFile* trace) {
-    std::vector<LineEvent> events;
     for (std::uint64_t batch = 0;; ++batch) {
-        events.clear();
-        const Result<bool> more = stream_.next(events);
-        if (!more) return more.error();
-        checks_.expect(stream_.steps().moves(), stream_.schedule().take_shifts());
-        layers_.begin(stream_.steps().begun(), stream_.schedule().shift_ns());
+        const Portion& portion = stream_.next();
+        if (!portion.more) return portion.more.error();
+        layer_ = portion.layer;
+        shift_ns_ = portion.shift_ns;
+        checks_.expect(portion.moves, portion.shifts);
+        layers_.begin(portion.begun, portion.shift_ns);
         const Result<bool> executed =
-            follow(events, executor, course_, clock_, control_.stop_requests());
+            follow(portion.events, executor, course_, clock_, control_.stop_requests());
         is_derailed_ = !executed.ok();
         if (!executed) return executed.error();
         if (!*executed) return why_ended();
-        if (!*more) return Done{};
+        if (!*portion.more) return Done{};
         if (batch % batches_between_questions != 0) continue;
         if (trace && trace->failed()) return trace->flush();
         if (asked_to_stop(executor)) return stopped();
@@ -196,7 +202,7 @@ void Simulation::live(double time_s) {
 }
 
 Diagnostic Simulation::why_ended() const {
-    if (heat_.control().trip()) return tripped(heat_, stream_.steps().layer());
+    if (heat_.control().trip()) return tripped(heat_, layer_);
     return ended(static_cast<double>(clock_.now_ns()) / ns_per_s, life_.layer(),
                  life_.ended_by().value_or(signalled_ ? "stopped on request"
                                                       : "the script ends, and the print rests"));
@@ -204,7 +210,7 @@ Diagnostic Simulation::why_ended() const {
 
 bool Simulation::asked_to_stop(const Executor& executor) const {
     if (job_.progress)
-        job_.progress({stream_.steps().layer(), inspection_.totals.layers,
+        job_.progress({layer_, inspection_.totals.layers,
                        static_cast<double>(executor.time_ns()) / ns_per_s,
                        inspection_.header.summary.estimated_time_s});
     return job_.stop && job_.stop();
@@ -216,7 +222,7 @@ SimulationReport Simulation::report() const {
     report.printer = job_.printer;
     report.inspection = inspection_;
     report.print_time_s = print_time_s_;
-    report.delayed_ns = stream_.schedule().shift_ns() - EventStream::driver_wake_ns;
+    report.delayed_ns = shift_ns_ - EventStream::driver_wake_ns;
     for (std::size_t i = 0; i < report.pulses.size(); ++i) report.pulses[i] = decoder_.figures(i);
     report.positions = decoder_.positions();
     report.writes = decoder_.writes();
