@@ -53,12 +53,14 @@ function(lyr_compile_together target)
   endif()
 endfunction()
 
-# lyr_room(<library> [SMALL] SOURCES <file>... [FAST <file>...] [ALONE <file>...] [LINK <library>...] [PRIVATE <library>...])
+# lyr_room(<library> [SMALL] [BARE] SOURCES <file>... [FAST <file>...] [ALONE <file>...] [LINK <library>...] [PRIVATE <library>...])
 # Headers are included by their path from the root ("kernel/brep/model.h"); each room publishes only
 # its own folder, through a link in the build tree. SMALL rooms are what a board's program does now and then (options,
-# settings, reports): they are built for size, but for those of their sources that are FAST.
+# settings, reports): they are built for size, but for those of their sources that are FAST. BARE rooms hold nothing but
+# memory: nothing of this project throws, and when there is no memory the program ends with its message and cleans up no
+# more of it on the way; the code for that would be a tenth of them.
 function(lyr_room name)
-  cmake_parse_arguments(ROOM "SMALL" "" "SOURCES;FAST;ALONE;LINK;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ROOM "SMALL;BARE" "" "SOURCES;FAST;ALONE;LINK;PRIVATE" ${ARGN})
   file(RELATIVE_PATH path ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
   set(published ${PROJECT_BINARY_DIR}/rooms/${name})
   get_filename_component(parent ${published}/${path} DIRECTORY)
@@ -71,6 +73,9 @@ function(lyr_room name)
     if(ROOM_SMALL)
       target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-Os>)
       set_property(SOURCE ${ROOM_FAST} APPEND PROPERTY COMPILE_OPTIONS $<$<CONFIG:Release>:-O2>)
+    endif()
+    if(ROOM_BARE)
+      target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-fno-exceptions;-funwind-tables>)
     endif()
     lyr_compile_together(${name} ${ROOM_ALONE})
     lyr_use_headers(${name})
