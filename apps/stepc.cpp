@@ -147,9 +147,10 @@ void add_options(Options& app, Arguments& arguments) {
     slicer::Options& options = arguments.options;
     add_files(app, arguments);
     add_settings(app, arguments);
-    add_file(app, "--printer", arguments.printer_path,
-             "The machine whose limits the time is estimated with (printer.toml); -: standard "
-             "input; without it, a generic one");
+    add_file(
+        app, "--printer", arguments.printer_path,
+        "The machine whose limits the time is estimated with, and whose ranges the print should "
+        "keep to (printer.toml); -: standard input; without it, a generic one");
     add_numbers(app, "--up", "X,Y,Z", arguments.up, direction,
                 "Build direction in the model's coordinates, of any length");
     add_flag(app, "--allow-open", options.allow_open,

@@ -15,6 +15,7 @@
 #include "slicer/layers.h"
 #include "slicer/left_out.h"
 #include "slicer/print_fill.h"
+#include "slicer/printer_range.h"
 #include "slicer/raft.h"
 
 namespace lyr::slicer {
@@ -165,12 +166,15 @@ private:
 struct Sink {
     TimedWriter timed;
     const Progress& progress;
+    const Options& options;
     FillReport report{};
     LeftOutReport left_out{};
     BalanceReport balance{};
+    RangeReport range{};
     std::optional<Diagnostic> failed{};
 
     bool take(std::size_t i, TimedLayer made, std::size_t count) {
+        if (made.encoded && options.printer) range.add(*made.encoded, i, *options.printer);
         if (made.error) {
             failed = made.error;
         } else if (Status appended = timed.append(std::move(*made.encoded),
@@ -247,7 +251,9 @@ Result<Estimate> write_layers(const LayersToWrite& layers, format::Writer& write
                               format::ThumbnailPainter& painter, const Progress& progress,
                               Diagnostics& diagnostics) {
     const Job job{layers};
-    Sink sink{.timed = TimedWriter(writer, painter, job.estimator), .progress = progress};
+    Sink sink{.timed = TimedWriter(writer, painter, job.estimator),
+              .progress = progress,
+              .options = layers.options};
     if (job.in.plate.is_sequential()) {
         write_in_sequence(job, sink, diagnostics);
     } else {
@@ -260,6 +266,7 @@ Result<Estimate> write_layers(const LayersToWrite& layers, format::Writer& write
         !printed)
         return printed.error();
     sink.balance.finish(layers.spans, diagnostics);
+    if (layers.options.printer) sink.range.finish(*layers.options.printer, diagnostics);
     return sink.timed.estimate();
 }
 

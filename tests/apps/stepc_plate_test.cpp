@@ -108,3 +108,32 @@ TEST_CASE("stepc: a wipe without a retraction to wipe on is told, and nothing is
           std::string::npos);
     CHECK(folder.run("lyrview p.lyr --layer 3 --no-travel").out.find("wipe") == std::string::npos);
 }
+
+TEST_CASE("stepc: what leaves the printer's ranges is told as the printer would refuse it") {
+    const Folder folder("stepc-range");
+    folder.copy("parts/cube_hole.step", "p.step");
+    folder.copy("printers/cartesian.toml", "printer.toml");
+    folder.copy("printers/delta.toml", "delta.toml");
+    const std::string slice = "stepc p.step --set adhesion.kind=skirt ";
+    const Ended beside = folder.run(slice + "--printer printer.toml");
+    CHECK(beside.status == 0);
+    for (const std::string axis : {"x", "y"}) {
+        const std::string told = " mm on axis " + axis + ", and axis." + axis + ".range_mm of the";
+        CHECK_MESSAGE(beside.err.find(told) != std::string::npos, beside.err);
+    }
+    CHECK(beside.err.find("axis.z.range_mm") == std::string::npos);
+    const double beyond_mm = number_after(beside.err, "the print goes to ");
+    CHECK(beyond_mm < 0);
+    const Ended refused = folder.run("lyrrun p.lyr --simulate --printer printer.toml");
+    CHECK(refused.status == 7);
+    CHECK(number_after(refused.err, "the path goes to ") ==
+          doctest::Approx(beyond_mm).epsilon(1e-3));
+    // Without the printer nobody knows its ranges.
+    CHECK(folder.run(slice).err.empty());
+    const Ended within = folder.run(slice + "--printer printer.toml --at 20,20");
+    CHECK(within.err.empty());
+    CHECK(folder.run("lyrrun p.lyr --simulate --printer printer.toml").status == 0);
+    const Ended far = folder.run("stepc p.step --printer delta.toml --at 90,0");
+    CHECK_MESSAGE(far.err.find("(delta.reach_mm); plate.at") != std::string::npos, far.err);
+    CHECK(folder.run("lyrrun p.lyr --simulate --printer delta.toml").status == 7);
+}
