@@ -90,9 +90,12 @@ std::vector<Eigen::Affine3d> positions() {
 
 TEST_CASE("cutter 2, 3: in every position the areas of closed contours add up to the volume") {
     const Tolerance tolerance{0.001};
-    for (const Case& solid : solids()) {
+    const std::vector<Case> cases = solids();
+    for (std::size_t which = 0; which < cases.size(); ++which) {
+        const Case& solid = cases[which];
         CAPTURE(solid.name);
-        for (std::size_t number = 0; number < positions().size(); ++number) {
+        // Every second position, in turns.
+        for (std::size_t number = which % 2; number < positions().size(); number += 2) {
             CAPTURE(number);
             const Eigen::Affine3d position = positions()[number];
             const Model model = transformed(solid.model, position);

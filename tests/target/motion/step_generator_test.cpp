@@ -56,7 +56,7 @@ TEST_CASE("steps 1, 2: lines and arcs of all sizes, against a bisection of the i
         double mm;
         std::size_t moves;
     };
-    for (unsigned seed = 0; seed < 5; ++seed)
+    for (unsigned seed = 0; seed < 3; ++seed)
         for (const Size& size : {Size{0.02, 300}, Size{1, 100}, Size{50, 12}}) {
             std::mt19937 random(seed);
             Job job;
@@ -108,7 +108,7 @@ TEST_CASE("steps 1: the drawn circle stays within half a step of the round one")
 }
 
 TEST_CASE("steps 1, 2: arcs that are nearly straight" * doctest::test_suite("long")) {
-    for (double sagitta_mm = 1e-14; sagitta_mm < 30; sagitta_mm *= 30)
+    for (double sagitta_mm = 1e-14; sagitta_mm < 30; sagitta_mm *= 100)
         for (const double sign : {1.0, -1.0})
             for (const Point& to : {Point{100, 0, 0}, Point{0, -100, 0}, Point{61, 33, 0}}) {
                 Job job;
@@ -137,11 +137,11 @@ TEST_CASE("steps 2: an arc without height steps as the line does") {
     }
 }
 
-TEST_CASE("steps 1, 3: a hundred thousand random moves and the way back end where they began" *
+TEST_CASE("steps 1, 3: thousands of random moves and the way back end where they began" *
           doctest::test_suite("long")) {
     std::mt19937 random(11);
     Job job;
-    job.moves = test::random_moves(random, 100'000, 0.2, job.origin, true);
+    job.moves = test::random_moves(random, 30'000, 0.2, job.origin, true);
     Point end = end_of(job.moves.back().path);
     double fed_mm = 0;
     for (const Move& move : job.moves) fed_mm += advance_of(move.path);
