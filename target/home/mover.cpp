@@ -6,9 +6,8 @@
 #include <thread>
 
 #include "base/constants.h"
-#include "target/moves/move_maker.h"
-#include "target/run/event_stream.h"
-#include "target/run/motor_steps.h"
+#include "target/home/move_stream.h"
+#include "target/run/event_flow.h"
 #include "target/run/real_time.h"
 
 namespace lyr::home {
@@ -35,40 +34,15 @@ private:
     ContactWatch* watch_;
 };
 
-void drain(run::MotorSteps& generator, run::PulseSchedule& schedule,
-           std::vector<run::LineEvent>& events) {
-    std::array<motion::StepEvent, 1024> steps;
-    std::vector<run::Step> single;
-    for (std::size_t count = steps.size(); count == steps.size();) {
-        count = generator.next(steps);
-        single.clear();
-        for (const motion::StepEvent& step : std::span(steps).first(count))
-            run::append_steps(step, single);
-        schedule.append(single, events);
-    }
-}
-
-Result<std::vector<run::LineEvent>> events_of(const config::Printer& machine,
-                                              std::span<const motion::Move> moves) {
-    Result<motion::Planner> planner = motion::Planner::create(
-        moves::motion_limits(machine), std::max<std::size_t>(moves.size() + 1, 4));
-    if (!planner) return planner.error();
-    for (const motion::Move& move : moves)
-        if (Status pushed = planner->push(move); !pushed) return pushed.error();
-    planner->flush();
-    run::MotorSteps generator(machine);
-    run::PulseSchedule schedule(machine.pulse, run::line_layout(machine).enable);
+// The edges of all the moves, or until nobody takes them any more.
+void make(MoveStream& stream, run::EventFlow& flow, const std::atomic<bool>& finished) {
     std::vector<run::LineEvent> events;
-    schedule.begin(run::EventStream::driver_wake_ns, events);
-    for (motion::PlannedMove planned; planner->pop(planned);) {
-        generator.start(planned);
-        drain(generator, schedule, events);
+    for (bool more = true; more && !finished.load();) {
+        events.clear();
+        more = stream.next(events);
+        flow.put(events);
     }
-    generator.finish();
-    drain(generator, schedule, events);
-    schedule.finish(planner->time_ns() + generator.tail_ns(), events);
-    events.pop_back();  // the motors stay on
-    return events;
+    flow.close();
 }
 
 // From the fastest of the moves to rest, twice as long as the slowest axis needs, as in a print.
@@ -111,8 +85,8 @@ Result<Contacts> Mover::touched() {
 
 Result<Moved> Mover::run(const config::Printer& machine, std::span<const motion::Move> moves,
                          Contacts watched) {
-    const Result<std::vector<run::LineEvent>> events = events_of(machine, moves);
-    if (!events) return events.error();
+    Result<MoveStream> stream = MoveStream::create(machine, moves);
+    if (!stream) return stream.error();
     run::StopRequests stop{0};
     if (stop_ && asked() > 0) return stopped();
     if (watch_)
@@ -124,7 +98,7 @@ Result<Moved> Mover::run(const config::Printer& machine, std::span<const motion:
     PolledClock polled(clock_, watch_ && !stop_ ? &*watch_ : nullptr);
     run::Executor executor(tally_, polled, timing, stop);
     const Result<bool> executed =
-        stop_ ? execute_beside(executor, *events, stop) : execute(executor, *events, stop);
+        stop_ ? execute_beside(executor, *stream, stop) : execute(executor, *stream);
     if (!executed) return executed.error();
     // Whoever writes next takes all lines but enable for inactive.
     const gpio::LineMask enable = run::line_layout(machine).enable;
@@ -139,9 +113,14 @@ unsigned Mover::asked() {
     return count;
 }
 
-Result<bool> Mover::execute(run::Executor& executor, std::span<const run::LineEvent> events,
-                            run::StopRequests&) {
-    Result<bool> executed = executor.execute(events);
+Result<bool> Mover::execute(run::Executor& executor, MoveStream& stream) {
+    std::vector<run::LineEvent> events;
+    Result<bool> executed = true;
+    for (bool more = true; more && executed && *executed;) {
+        events.clear();
+        more = stream.next(events);
+        executed = executor.execute(events);
+    }
     const std::int64_t since_ns = clock_.now_ns();
     if (!executed || !watch_) return executed;
     do watch_->poll(clock_.wait_until_ns(clock_.now_ns() + watch_->settle_ns()));
@@ -156,15 +135,18 @@ bool Mover::may_settle(std::int64_t since_ns) const {
     return !watch_->is_quiet(now_ns) && now_ns - since_ns < most_settlings * settle_ns;
 }
 
-// The real-time thread writes; this one watches, and is asked to stop.
-Result<bool> Mover::execute_beside(run::Executor& executor, std::span<const run::LineEvent> events,
+// One thread makes edges, the real-time thread writes them; this one watches, and is asked to stop.
+Result<bool> Mover::execute_beside(run::Executor& executor, MoveStream& stream,
                                    run::StopRequests& stop) {
     Result<bool> executed = true;
     std::atomic<bool> finished{false};
+    run::EventFlow flow(stop, finished);
+    std::thread maker([&] { make(stream, flow, finished); });
     std::thread edges([&] {
         Diagnostics warnings;
         run::take_precedence(cpu_, warnings);
-        executed = executor.execute(events);
+        executed = flow.drain(
+            [&](std::span<const run::LineEvent> events) { return executor.execute(events); });
         finished.store(true);
     });
     const auto look = [&] {
@@ -178,6 +160,7 @@ Result<bool> Mover::execute_beside(run::Executor& executor, std::span<const run:
     };
     while (!finished.load()) look();
     edges.join();
+    maker.join();
     const std::int64_t since_ns = clock_.now_ns();
     do look();
     while (may_settle(since_ns));

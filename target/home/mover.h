@@ -9,15 +9,17 @@
 //  3. Who asks for a stop (SIGINT, an emergency line, a client of the print) brings the machine to rest, twice at once, and
 //     ends with status stopped; asked before, nothing moves. After a run the motors are on, and all
 //     lines but enable inactive, as the executor of a print expects them.
-//  4. On a board the lines are written by a thread of high priority and this one watches; with virtual time both are
-//     done by this one, step by step.
-//  5. All steps of a run are computed before it begins: 16 bytes an edge.
+//  4. On a board the lines are written by a thread of high priority, fed by another as in a print (run/event_flow.h), and
+//     this one watches; with virtual time all is done by this one, step by step.
+//  5. What the planner refuses is refused before anything moves. Edges are made while the machine moves, in bounded
+//     memory; those after the contact that stops it are never made, but for what the ring holds.
 
 #pragma once
 
 #include <span>
 
 #include "target/home/contacts.h"
+#include "target/home/move_stream.h"
 #include "target/home/step_tally.h"
 #include "target/motion/limits.h"
 #include "target/run/stop_signals.h"
@@ -48,11 +50,10 @@ public:
 
 private:
     unsigned asked();
-    Result<bool> execute(run::Executor& executor, std::span<const run::LineEvent> events,
-                         run::StopRequests& stop);
+    Result<bool> execute(run::Executor& executor, MoveStream& stream);
     // A watched contact may still settle, and not for ever.
     bool may_settle(std::int64_t since_ns) const;
-    Result<bool> execute_beside(run::Executor& executor, std::span<const run::LineEvent> events,
+    Result<bool> execute_beside(run::Executor& executor, MoveStream& stream,
                                 run::StopRequests& stop);
     Result<Moved> outcome(const motion::StepCounts& before) const;
 

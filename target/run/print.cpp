@@ -4,8 +4,6 @@
 
 #include "target/run/print.h"
 
-#include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <mutex>
 #include <optional>
@@ -17,7 +15,7 @@
 #include "target/gpio/gpiod_chip.h"
 #include "target/gpio/gpiod_inputs.h"
 #include "target/run/demands.h"
-#include "target/run/event_ring.h"
+#include "target/run/event_flow.h"
 #include "target/run/event_stream.h"
 #include "target/run/executor.h"
 #include "target/run/life.h"
@@ -29,11 +27,6 @@
 namespace lyr::run {
 namespace {
 
-// 2 MiB, and two edges a step: almost a second of four axes at 20,000 steps/s each.
-constexpr std::size_t ring_events = std::size_t{1} << 17;
-// How long a thread that waits for the ring sleeps; far below what the ring holds.
-constexpr std::chrono::microseconds planner_nap{2'000};
-constexpr std::chrono::microseconds executor_nap{50};
 // How soon a command is served.
 constexpr int signal_wait_ms = 20;
 constexpr double progress_s = 0.1;
@@ -45,11 +38,11 @@ struct Shared {
 
     PrintControl& control;
     StopRequests& stop_requests = control.stop_requests();
-    EventRing ring{ring_events};
+    // From when the path begins: what moves before it has one of its own.
+    std::optional<EventFlow> flow;
     Course course;
     LayerLog layers;
     HeatDesk desk;
-    std::atomic<bool> filled{false};    // the ring is full, or all of the print is in it
     std::atomic<bool> finished{false};  // the real-time thread has ended
     std::atomic<std::uint32_t> heat_ticks{0};
     OrderQueue orders;
@@ -87,36 +80,10 @@ Status fill(const PrintFile& file, EventStream& stream, Shared& shared) {
         }
         more = next.ok() && *next;
         shared.layers.begin(stream.steps().begun(), stream.schedule().shift_ns());
-        std::span<const LineEvent> left(events);
-        while (!left.empty() && !shared.finished.load()) {
-            left = left.subspan(shared.ring.push(left));
-            if (left.empty()) break;
-            shared.filled.store(true);
-            std::this_thread::sleep_for(planner_nap);
-        }
+        shared.flow->put(events);
     }
-    shared.ring.close();
-    shared.filled.store(true);
+    shared.flow->close();
     return status;
-}
-
-// The real-time thread. Events are taken a few at a time, so that the ring has room again early.
-Result<bool> drain(Executor& executor, gpio::Clock& clock, Shared& shared) {
-    constexpr std::size_t batch = 64;
-    while (!shared.ring.ended()) {
-        std::span<const LineEvent> events = shared.ring.view();
-        if (events.empty()) {
-            if (shared.stop_requests.load() != 0) return false;
-            std::this_thread::sleep_for(executor_nap);
-            continue;
-        }
-        events = events.first(std::min(batch, events.size()));
-        Result<bool> executed =
-            follow(events, executor, shared.course, clock, shared.stop_requests);
-        if (!executed || !*executed) return executed;
-        shared.ring.drop(events.size());
-    }
-    return true;
 }
 
 // Nobody tends heaters: pauses that the file asks for are still seen to.
@@ -347,9 +314,10 @@ void drive(Running& running, gpio::GpioChip& chip) {
     Shared& shared = running.shared;
     Diagnostics told_before;
     take_precedence(running.printer.timing.cpu, told_before);
-    while (!shared.filled.load() && !shared.stop_requests.load())
-        std::this_thread::sleep_for(executor_nap);
-    running.outcome.executed = drain(running.executor, running.traced, shared);
+    running.outcome.executed = shared.flow->drain([&](std::span<const LineEvent> events) {
+        return follow(events, running.executor, shared.course, running.traced,
+                      shared.stop_requests);
+    });
     const Status released = chip.release();
     if (!released && running.outcome.executed) running.outcome.executed = released.error();
     shared.finished.store(true);
@@ -395,6 +363,7 @@ Result<PrintReport> run(const PrintJob& job, Prepared& prepared, gpio::GpioChip&
     std::optional<JournalWriter> journal;
     if (prepared.journal) journal.emplace(std::move(*prepared.journal));
     life.keep_journal(journal ? &*journal : nullptr, prepared.identity);
+    shared.flow.emplace(shared.stop_requests, shared.finished);
     std::thread planner([&] { running.outcome.planned = fill(prepared.file, *stream, shared); });
     std::thread edges([&] { drive(running, chip); });
     watch(watched, job, inspection);

@@ -7,36 +7,16 @@
 
 #include <atomic>
 #include <csignal>
-#include <cstdlib>
 #include <mutex>
-#include <new>
 #include <thread>
 
+#include "target/home/heap.h"
 #include "target/home/scene.h"
 
 using namespace lyr;
 using namespace lyr::home;
 using namespace lyr::tests;
 using config::Kinematics;
-
-namespace {
-
-thread_local bool counts_allocations = false;
-thread_local std::size_t allocations = 0;
-
-}  // namespace
-
-void* operator new(std::size_t size) {
-    if (counts_allocations) ++allocations;
-    if (void* memory = std::malloc(size)) return memory;
-    throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept {
-    std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-    std::free(memory);
-}
 
 namespace {
 
@@ -141,6 +121,7 @@ TEST_CASE("tally 3, inputs 6: counting steps and collecting edges allocates noth
     gpio::MockInputs inputs(1, clock);
     StepTally tally(mock, clock);
     std::array<gpio::InputEdge, 4> edges{};
+    allocations = 0;
     counts_allocations = true;
     std::size_t collected = 0;
     for (int i = 0; i < 100'000; ++i) {

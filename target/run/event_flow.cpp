@@ -1,0 +1,32 @@
+#include "target/run/event_flow.h"
+
+#include <chrono>
+#include <thread>
+
+namespace lyr::run {
+namespace {
+
+// How long a full ring is left alone; far below what it holds.
+constexpr std::chrono::microseconds full_nap{2'000};
+
+}  // namespace
+
+void EventFlow::put(std::span<const LineEvent> events) {
+    while (!finished_.load()) {
+        events = events.subspan(ring_.push(events));
+        if (events.empty()) return;
+        filled_.store(true);
+        std::this_thread::sleep_for(full_nap);
+    }
+}
+
+void EventFlow::close() {
+    ring_.close();
+    filled_.store(true);
+}
+
+void EventFlow::nap() {
+    std::this_thread::sleep_for(std::chrono::microseconds(nap_us));
+}
+
+}  // namespace lyr::run

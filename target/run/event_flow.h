@@ -1,0 +1,68 @@
+// Line events on their way from the thread that computes them to the real-time thread that writes them, in a print and in
+// what moves before it.
+//
+// Contract
+//  1. put() waits for as long as the ring is full, and no longer than until `finished`.
+//  2. drain() begins when the ring is full or holds all there will be. Events come out a few at a time, so that there is
+//     room again early.
+//  3. A ring that has run dry is waited for, and what comes late by that is late as any other event (executor.h, 2 and 4).
+//     Where a stop was asked for, drain() ends after a tenth of a second of that, and at once if it was twice.
+//  4. In drain() nothing is allocated or locked.
+
+#pragma once
+
+#include <algorithm>
+
+#include "target/run/event_ring.h"
+#include "target/run/executor.h"
+
+namespace lyr::run {
+
+class EventFlow {
+public:
+    // 1 MiB, and two edges a step: 0.2 s at the 300,000 edges/s that are about the most a board's kernel writes, 0.4 s of
+    // four axes at 20,000 steps/s each.
+    static constexpr std::size_t ring_events = std::size_t{1} << 16;
+
+    // `finished`: the real-time thread has ended.
+    EventFlow(const StopRequests& stop_requests, const std::atomic<bool>& finished)
+        : stop_requests_(stop_requests), finished_(finished) {}
+
+    void put(std::span<const LineEvent> events);
+    // There are no more.
+    void close();
+
+    // `execute` is Executor's, or more; where it ends, so does this.
+    template <typename Execute>
+    Result<bool> drain(const Execute& execute) {
+        constexpr std::size_t batch = 64;
+        while (!filled_.load() && !stops()) nap();
+        for (int naps = 0; !ring_.ended();) {
+            std::span<const LineEvent> events = ring_.view();
+            if (events.empty()) {
+                if (stops() && (naps++ == most_naps || stop_requests_.load() > 1)) return false;
+                nap();
+                continue;
+            }
+            naps = 0;
+            events = events.first(std::min(batch, events.size()));
+            Result<bool> executed = execute(events);
+            if (!executed || !*executed) return executed;
+            ring_.drop(events.size());
+        }
+        return true;
+    }
+
+private:
+    bool stops() const { return stop_requests_.load() != 0; }
+    // Of the real-time thread, which has nothing to write.
+    static constexpr int nap_us = 50, most_naps = 100'000 / nap_us;
+    static void nap();
+
+    const StopRequests& stop_requests_;
+    const std::atomic<bool>& finished_;
+    EventRing ring_{ring_events};
+    std::atomic<bool> filled_{false};  // the ring is full, or all there will be is in it
+};
+
+}  // namespace lyr::run
