@@ -90,6 +90,10 @@ public:
             heat_.observe(
                 [this](double time_s) { job_.heat_watch(time_s, heat_.any_heater_on()); });
         if (job.resumption) life_.begin_with(*job.resumption, false);
+        if (job.resumption) {
+            stream_.begin_drawn_back(job.resumption->drawn_back_mm);
+            file_.begin_drawn_back(job.resumption->drawn_back_mm);
+        }
         stream_.heed_speed(course_.plan_factor);
         if (is_lived()) clock_.on_tick = [this](double time_s) { live(time_s); };
     }

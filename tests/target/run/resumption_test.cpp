@@ -38,12 +38,24 @@ double end_mm(const SimulationReport& report, std::size_t axis) {
            static_cast<double>(report.positions[axis]) / report.printer.axes[axis].steps_per_mm;
 }
 
-void write_entry(const std::string& file, std::uint32_t layer,
-                 std::optional<std::int64_t> rest_nm = {},
-                 std::optional<std::array<std::int32_t, 2>> place_um = {}) {
+void write_journal(const config::Printer& printer, const std::string& file, JournalEntry entry) {
     Result<Journal> journal = Journal::open(file + ".journal");
     REQUIRE(journal.ok());
-    REQUIRE(journal->write({*identity_of(file), layer, 6, 5'000'000'000, rest_nm, place_um}).ok());
+    entry.file = *identity_of(file);
+    entry.printer = identity_of(printer);
+    entry.layers = 6;
+    entry.time_ns = 5'000'000'000;
+    REQUIRE(journal->write(entry).ok());
+}
+
+void write_entry(const config::Printer& printer, const std::string& file, std::uint32_t layer,
+                 std::optional<std::int64_t> rest_nm = {},
+                 std::optional<std::array<std::int32_t, 2>> place_um = {}) {
+    JournalEntry entry;
+    entry.layer = layer;
+    entry.rest_nm = rest_nm;
+    entry.place_um = place_um;
+    write_journal(printer, file, entry);
 }
 
 }  // namespace
@@ -62,7 +74,7 @@ TEST_CASE(
     for (const std::uint32_t layer : {0u, 1u, 2u, 4u, 6u}) {
         for (const bool is_parked : {false, true}) {
             CAPTURE(layer);
-            write_entry(file, layer,
+            write_entry(printer, file, layer,
                         is_parked ? std::optional(std::int64_t{6'500'000}) : std::nullopt);
             const Result<Resumption> found = find_resumption(printer, file);
             REQUIRE_MESSAGE(found.ok(), (found.ok() ? "" : to_string(found.error())));
@@ -89,7 +101,7 @@ TEST_CASE(
     "resumption 4: a crooked bed's difference between the layer's begin and start_mm counts") {
     config::Printer printer = config::generic_printer();
     const std::string file = write_print("crooked", {draw_square, draw_arcs, draw_square});
-    write_entry(file, 2);
+    write_entry(printer, file, 2);
     const Result<Resumption> flat = find_resumption(printer, file);
     REQUIRE(flat.ok());
     // A plane: of the same slope everywhere, and as high at the start as the mesh's other corner is far.
@@ -97,17 +109,18 @@ TEST_CASE(
     printer.mesh.area_mm = {0, 0, width_mm, width_mm};
     printer.mesh.heights_mm = {{0, slope * width_mm}, {0, slope * width_mm}};
     printer.start_mm = {150, 20, 0.2};
+    write_entry(printer, file, 2);
     const Result<Resumption> crooked = find_resumption(printer, file);
     REQUIRE(crooked.ok());
     CHECK(crooked->stopped_z_mm ==
           doctest::Approx(flat->stopped_z_mm + slope * (flat->state.start_x_mm - 150)));
     // Where it was in the layer is noted.
-    write_entry(file, 2, {}, std::array<std::int32_t, 2>{120'000, 45'500});
+    write_entry(printer, file, 2, {}, std::array<std::int32_t, 2>{120'000, 45'500});
     const Result<Resumption> within = find_resumption(printer, file);
     REQUIRE(within.ok());
     CHECK(within->stopped_z_mm == doctest::Approx(flat->stopped_z_mm + slope * (120 - 150)));
     // Where it was parked its height is known, and counts from start_mm already.
-    write_entry(file, 2, 6'500'000);
+    write_entry(printer, file, 2, 6'500'000);
     const Result<Resumption> parked = find_resumption(printer, file);
     REQUIRE(parked.ok());
     CHECK(parked->stopped_z_mm == doctest::Approx(6.5));
@@ -174,18 +187,135 @@ TEST_CASE("resumption 2: no journal, or another file, is refused") {
         return found.error().message;
     };
     CHECK(refusal().find("no journal") != std::string::npos);
-    write_entry(file, 2);
+    write_entry(printer, file, 2);
     CHECK(find_resumption(printer, file).ok());
     write_print("resume_other", {draw_square, draw_circles});
     CHECK(refusal().find("changed") != std::string::npos);
     write_print("resume_other", {draw_square, draw_arcs});
     CHECK(find_resumption(printer, file).ok());
     std::filesystem::resize_file(file + ".journal", 20);
-    CHECK(refusal().find("no journal") != std::string::npos);
+    CHECK(refusal().find("damaged") != std::string::npos);
+    std::filesystem::resize_file(file + ".journal", 0);
+    CHECK(refusal().find("nothing in it") != std::string::npos);
     std::filesystem::remove(file + ".journal");
     config::Printer elsewhere = printer;
     elsewhere.recovery_folder = "/var/lib/lyr";
     CHECK(journal_path(elsewhere, "/home/a/part.lyr") == "/var/lib/lyr/part.lyr.journal");
+}
+
+TEST_CASE("resumption 2: a print was resumed with the file of any other printer") {
+    const config::Printer printer = config::generic_printer();
+    const std::string file = write_print("resume_printer", {draw_square, draw_arcs});
+    write_entry(printer, file, 2);
+    config::Printer mended = printer, other = printer;
+    for (config::Axis& axis : mended.axes) axis.max_speed_mm_s /= 2;
+    mended.heaters[config::heater_tool]->guard.high_c -= 20;
+    CHECK(find_resumption(mended, file).ok());
+    other.axes[config::axis_x].steps_per_mm = 160;
+    const Result<Resumption> refused = find_resumption(other, file);
+    REQUIRE_FALSE(refused.ok());
+    CHECK(refused.error().status == ExitStatus::input);
+    CHECK(refused.error().message.find("other steps_per_mm;") != std::string::npos);
+    std::filesystem::remove(file + ".journal");
+}
+
+TEST_CASE("resumption 5: the first line of a resumed print lacked what a pause had drawn back") {
+    const config::Printer printer = config::generic_printer();
+    const Drawing drawing = [](const Pen& pen) {
+        pen.layer.unretract();
+        draw_square(pen);
+        pen.layer.retract();
+    };
+    const std::string file =
+        write_print("resume_filament", {drawing, drawing, drawing}, {}, [](auto& state) {
+            state.retracted_mm = state.retract_length_mm = 0.5;
+            state.temperatures.push_back({{format::HeaterKind::tool, 0}, 210});
+        });
+    // Of the extruder, in mm.
+    const auto pushed_mm = [&](std::int32_t drawn_back_um) {
+        JournalEntry entry;
+        entry.layer = 2;
+        entry.drawn_back_um = drawn_back_um;
+        write_journal(printer, file, entry);
+        SimulationJob job{file, printer, {}, {}, {}};
+        const Result<Resumption> found = find_resumption(printer, file);
+        REQUIRE(found.ok());
+        job.resumption = *found;
+        const Result<SimulationReport> resumed = simulate(job);
+        REQUIRE_MESSAGE(resumed.ok(), (resumed.ok() ? "" : to_string(resumed.error())));
+        CHECK(resumed->within_limits());
+        return end_mm(*resumed, config::axis_e);
+    };
+    // As far as the layer's begin has it: then the file is followed as it is.
+    const double as_in_file_mm = pushed_mm(500);
+    CHECK(pushed_mm(0) == doctest::Approx(as_in_file_mm - 0.5).epsilon(1e-4));
+    CHECK(pushed_mm(2'500) == doctest::Approx(as_in_file_mm + 2).epsilon(1e-4));
+    std::filesystem::remove(file + ".journal");
+}
+
+TEST_CASE("resumption 5: after a loss of power in a change of filament the print went on without") {
+    const config::Printer printer = config::generic_printer();
+    const std::string file =
+        write_print("resume_unloaded", {draw_square, draw_square}, {}, [](auto& state) {
+            state.temperatures.push_back({{format::HeaterKind::tool, 0}, 210});
+        });
+    JournalEntry entry;
+    entry.layer = 2;
+    entry.rest_nm = 6'500'000;
+    entry.drawn_back_um = 2'000;
+    entry.is_unloaded = true;
+    write_journal(printer, file, entry);
+    const Result<Resumption> found = find_resumption(printer, file);
+    REQUIRE(found.ok());
+    CHECK(found->drawn_back_mm == 0);
+    CHECK(text_of(*found, file).find("the filament drawn out") != std::string::npos);
+    SimulationJob job{file, printer, {}, {}, {}};
+    job.resumption = *found;
+    const Result<SimulationReport> rests = simulate(job);
+    REQUIRE_FALSE(rests.ok());
+    CHECK(rests.error().message.find("the print rests") != std::string::npos);
+    job.script = {{600, Resume{}}};
+    const Result<SimulationReport> resumed = simulate(job);
+    REQUIRE_MESSAGE(resumed.ok(), (resumed.ok() ? "" : to_string(resumed.error())));
+    CHECK(resumed->within_limits());
+    const double pushed_mm = static_cast<double>(resumed->trip_steps[config::axis_e]) /
+                             printer.axes[config::axis_e].steps_per_mm;
+    CHECK(pushed_mm ==
+          doctest::Approx(printer.filament.load_mm + printer.filament.purge_mm).epsilon(1e-4));
+    CHECK(resumed->trip_steps[config::axis_z] == 2'000);
+    std::filesystem::remove(file + ".journal");
+}
+
+// Stopped while the file has the filament drawn back, and while it is pushed.
+TEST_CASE("life 7: how far the path had drawn the filament back was not noted") {
+    const config::Printer printer = nearby_printer();
+    const std::string file = write_print("drawn_back", {[](const Pen& pen) {
+                                             pen.path(40);
+                                             pen.line(1, 0);
+                                             pen.layer.dwell(1'000);
+                                             pen.layer.retract();
+                                             pen.layer.dwell(2'000);
+                                             pen.layer.unretract();
+                                             pen.line(2, 0);
+                                         }},
+                                         {}, [](auto& state) { state.retract_length_mm = 0.8; });
+    for (const bool is_drawn_back : {false, true}) {
+        gpio::MonotonicClock clock;
+        gpio::MockChip chip(line_count, clock, {});
+        bool sent = false;
+        PrintJob job{file, printer, false, [&](const Progress& now) {
+                         if (now.time_s <= (is_drawn_back ? 1.05 : 0)) return;
+                         if (!sent) std::raise(SIGTERM);
+                         sent = true;
+                     }};
+        job.journal = file + ".journal";
+        REQUIRE_FALSE(print(job, chip, clock).ok());
+        const auto entry = read_journal(job.journal);
+        REQUIRE((entry.ok() && *entry));
+        CHECK((*entry)->rest_nm.has_value());
+        CHECK((*entry)->drawn_back_um == (is_drawn_back ? 800 : 0));
+        std::filesystem::remove(job.journal);
+    }
 }
 
 TEST_CASE(
@@ -242,11 +372,63 @@ TEST_CASE("print 7: a journal that cannot be written is a warning, and the print
     CHECK(report->warnings[0].message.find("cannot be resumed") != std::string::npos);
     PrintControl control;
     job.control = &control;
+    gpio::MockChip third(line_count, clock, {});
+    CHECK(print(job, third, clock).ok());
+    CHECK(control.status().message.find("cannot write the journal") != std::string::npos);
+    CHECK(control.status().message.find("loss of power") != std::string::npos);
     job.journal = "/dev/full";
     gpio::MockChip again(line_count, clock, {});
     CHECK(print(job, again, clock).ok());
     CHECK(control.status().message.find("cannot write the journal") != std::string::npos);
     CHECK(std::filesystem::exists("/dev/full"));  // which is not its own to remove
+}
+
+TEST_CASE("print 7: a print of the same file took another printer's journal away") {
+    const config::Printer printer = nearby_printer();
+    const std::string file = write_print("neighbour", {draw_small});
+    config::Printer other = printer;
+    other.name = "neighbour";
+    write_entry(other, file, 4);
+    const auto before = read_journal(file + ".journal");
+    PrintControl control;
+    gpio::MonotonicClock clock;
+    gpio::MockChip chip(line_count, clock, {});
+    PrintJob job{file, printer, false, {}};
+    job.control = &control;
+    job.journal = file + ".journal";
+    const Result<PrintReport> report = print(job, chip, clock);
+    REQUIRE(report.ok());
+    REQUIRE_FALSE(report->warnings.empty());
+    const std::string& told = report->warnings[0].message;
+    CHECK(told.find("another printer (other name)") != std::string::npos);
+    CHECK(told.find("cannot be resumed") != std::string::npos);
+    CHECK(report->told >= 1);
+    CHECK(control.status().message == told);
+    const auto after = read_journal(file + ".journal");
+    REQUIRE((after.ok() && *after));
+    CHECK(*after == *before);
+    // Its own goes when it is done.
+    write_entry(printer, file, 4);
+    gpio::MockChip again(line_count, clock, {});
+    CHECK(print(job, again, clock).ok());
+    CHECK_FALSE(std::filesystem::exists(file + ".journal"));
+}
+
+TEST_CASE(
+    "print 7: a journal that is damaged or of another version is replaced, and that is told") {
+    const std::string file = write_print("replaced", {draw_small});
+    for (const std::string& bytes : {std::string("LYRJRNL1"), std::string(500, 'x')}) {
+        std::ofstream(file + ".journal") << bytes;
+        gpio::MonotonicClock clock;
+        gpio::MockChip chip(line_count, clock, {});
+        PrintJob job{file, nearby_printer(), false, {}};
+        job.journal = file + ".journal";
+        const Result<PrintReport> report = print(job, chip, clock);
+        REQUIRE(report.ok());
+        REQUIRE_FALSE(report->warnings.empty());
+        CHECK(report->warnings[0].message.find("it is replaced") != std::string::npos);
+        CHECK_FALSE(std::filesystem::exists(job.journal));
+    }
 }
 
 TEST_CASE("print 6: pauses, in a real print's threads, leave the path as it is") {
