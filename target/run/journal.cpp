@@ -186,24 +186,26 @@ Result<Journal> Journal::open(const std::string& path) {
         return busy;
     }
     sync_folder_of(path);
-    const std::optional<Numbered> before = read_slots(descriptor).latest;
-    return Journal(path, descriptor, before ? before->sequence : 0);
+    const Slots before = read_slots(descriptor);
+    return Journal(path, descriptor, before.latest ? before.latest->sequence : 0, before.is_empty);
 }
 
 Journal::Journal(Journal&& other) noexcept
     : path_(std::move(other.path_)),
       descriptor_(std::exchange(other.descriptor_, -1)),
-      sequence_(other.sequence_) {}
+      sequence_(other.sequence_),
+      is_empty_(other.is_empty_) {}
 
 Journal::~Journal() {
     if (descriptor_ < 0) return;
     // A print that did not begin leaves nothing behind.
-    if (sequence_ == 0) remove();
+    if (is_empty_) remove();
     ::close(descriptor_);
 }
 
 Status Journal::write(const JournalEntry& entry) {
     const Slot slot = slot_of(entry, sequence_ + 1);
+    is_empty_ = false;
     const off_t place = (sequence_ + 1) % 2 == 0 ? 0 : slot_spacing;
     errno = ENOSPC;  // of a write that was cut short
     const ssize_t written = ::pwrite(descriptor_, slot.data(), slot.size(), place);

@@ -65,12 +65,16 @@ public:
     void remove();
 
 private:
-    Journal(std::string path, int descriptor, std::uint64_t sequence)
-        : path_(std::move(path)), descriptor_(descriptor), sequence_(sequence) {}
+    Journal(std::string path, int descriptor, std::uint64_t sequence, bool is_empty)
+        : path_(std::move(path)),
+          descriptor_(descriptor),
+          sequence_(sequence),
+          is_empty_(is_empty) {}
 
     std::string path_;
     int descriptor_;
     std::uint64_t sequence_;  // of the entry written last
+    bool is_empty_;
 };
 
 class JournalWriter {

@@ -205,7 +205,10 @@ bool Life::can_push() const {
 }
 
 void Life::make(std::span<const Leg> legs, const motion::Point& from) {
-    Result<Trip> trip = plan_trip(printer_, from, legs, course_.levels.load());
+    // Before the path, the drivers are switched on by it.
+    const gpio::LineMask levels =
+        course_.started.load() ? course_.levels.load() : line_layout(printer_).enable;
+    Result<Trip> trip = plan_trip(printer_, from, legs, levels);
     if (!trip) {
         message_ = "the head stays where it is: " + trip.error().message;
         return;
@@ -284,23 +287,18 @@ void Life::begin_with(const Resumption& resumption, bool is_lifted) {
     phase_ = Phase::heating;
 }
 
-// Before the path: the drivers are switched on by it.
-void Life::make_before_path(const Leg& leg) {
-    course_.levels.store(line_layout(printer_).enable);
+void Life::lift() {
+    const Leg leg{{parked_at_.x, parked_at_.y, printer_.start_mm[2]}, 0, printer_.pause.speed_mm_s};
     make(std::span(&leg, 1), parked_at_);
 }
 
-void Life::lift() {
-    make_before_path(
-        {{parked_at_.x, parked_at_.y, printer_.start_mm[2]}, 0, printer_.pause.speed_mm_s});
-}
-
+// These two: lifted, and before the path.
 void Life::load() {
     const config::FilamentSettings& filament = printer_.filament;
-    make_before_path({parked_at_, filament.load_mm + filament.purge_mm, filament.speed_mm_s});
+    const Leg leg{parked_at_, filament.load_mm + filament.purge_mm, filament.speed_mm_s};
+    make(std::span(&leg, 1), parked_at_);
 }
 
-// Lifted, and before the path.
 void Life::rest_for_filament() {
     awaits_filament_ = false;
     reason_ = ChangeFilament{};

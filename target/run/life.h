@@ -105,7 +105,6 @@ private:
     void go_back();
     void lift();
     void load();
-    void make_before_path(const Leg& leg);
     void rest_for_filament();
     void look();
     void note();

@@ -81,7 +81,7 @@ Result<Resumption> find_resumption(const config::Printer& printer, const std::st
     const std::string different = difference((*entry)->printer, identity_of(printer));
     if (!different.empty())
         return refused("it was begun on another printer, or this one was changed since: other " +
-                           different + "; resume it with that printer's file",
+                           different + "; resume it with that printer's file as it was",
                        file);
     const Result<FileIdentity> identity = identity_of(file);
     if (!identity) return identity.error();

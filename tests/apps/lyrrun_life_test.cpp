@@ -1,8 +1,8 @@
 // lyrrun from the outside: scripts, and going on with a print that was cut off.
 
 #include "apps/program.h"
+#include "target/run/cut_off.h"
 #include "target/run/print_files.h"
-#include "target/run/resumption.h"
 
 using namespace lyr;
 using namespace lyr::tests;
@@ -33,12 +33,8 @@ struct CutOff {
         return more + text_of(fs::path(LYR_FIXTURES) / "printers/cartesian.toml");
     }
     void cut(run::JournalEntry entry) const {
-        entry.file = *run::identity_of(file);
-        entry.printer = run::identity_of(*config::read_printer(folder / "p.toml"));
         entry.layer = 2;
-        entry.layers = 3;
-        entry.time_ns = 3'725'000'000'000;
-        REQUIRE(run::Journal::open(journal)->write(entry).ok());
+        write_journal(*config::read_printer(folder / "p.toml"), file, entry);
     }
     Ended lyrrun(const std::string& options) const {
         return folder.run("lyrrun " + file + " --printer p.toml " + options);
@@ -83,7 +79,7 @@ TEST_CASE("lyrrun: a print that was cut off was resumed with any other printer's
     const CutOff print("other_printer");
     const Ended found = print.lyrrun("--resumable");
     CHECK(found.status == 0);
-    CHECK(found.out.find("layer 2 of 3, 3725 s into the print") != std::string::npos);
+    CHECK(found.out.find("layer 2 of 6, 5 s into the print") != std::string::npos);
     const auto with = [&](const std::string& change) {
         print.folder.write("p.toml", CutOff::printer());
         CHECK(print.folder.run("sed -i '" + change + "' p.toml").status == 0);

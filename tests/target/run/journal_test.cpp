@@ -183,6 +183,8 @@ TEST_CASE("journal 1: a journal of another version was no journal, or read as on
     CHECK(bench.why_none() == "the journal was written by another version of lyrrun");
     // A print that begins anew goes on after it, from its first entry.
     bench.put(both);
+    CHECK(Journal::open(bench.path).ok());
+    CHECK(bench.bytes() == both);
     Result<Journal> journal = Journal::open(bench.path);
     REQUIRE(journal.ok());
     for (std::uint32_t i = 0; i < 3; ++i) {

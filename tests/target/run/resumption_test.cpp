@@ -12,6 +12,7 @@
 #include <fstream>
 
 #include "target/gpio/mock_chip.h"
+#include "target/run/cut_off.h"
 #include "target/run/patient_printer.h"
 #include "target/run/print.h"
 #include "target/run/print_files.h"
@@ -36,16 +37,6 @@ void draw_small(const Pen& pen) {
 double end_mm(const SimulationReport& report, std::size_t axis) {
     return report.printer.start_mm[axis] +
            static_cast<double>(report.positions[axis]) / report.printer.axes[axis].steps_per_mm;
-}
-
-void write_journal(const config::Printer& printer, const std::string& file, JournalEntry entry) {
-    Result<Journal> journal = Journal::open(file + ".journal");
-    REQUIRE(journal.ok());
-    entry.file = *identity_of(file);
-    entry.printer = identity_of(printer);
-    entry.layers = 6;
-    entry.time_ns = 5'000'000'000;
-    REQUIRE(journal->write(entry).ok());
 }
 
 void write_entry(const config::Printer& printer, const std::string& file, std::uint32_t layer,
@@ -217,105 +208,6 @@ TEST_CASE("resumption 2: a print was resumed with the file of any other printer"
     CHECK(refused.error().status == ExitStatus::input);
     CHECK(refused.error().message.find("other steps_per_mm;") != std::string::npos);
     std::filesystem::remove(file + ".journal");
-}
-
-TEST_CASE("resumption 5: the first line of a resumed print lacked what a pause had drawn back") {
-    const config::Printer printer = config::generic_printer();
-    const Drawing drawing = [](const Pen& pen) {
-        pen.layer.unretract();
-        draw_square(pen);
-        pen.layer.retract();
-    };
-    const std::string file =
-        write_print("resume_filament", {drawing, drawing, drawing}, {}, [](auto& state) {
-            state.retracted_mm = state.retract_length_mm = 0.5;
-            state.temperatures.push_back({{format::HeaterKind::tool, 0}, 210});
-        });
-    // Of the extruder, in mm.
-    const auto pushed_mm = [&](std::int32_t drawn_back_um) {
-        JournalEntry entry;
-        entry.layer = 2;
-        entry.drawn_back_um = drawn_back_um;
-        write_journal(printer, file, entry);
-        SimulationJob job{file, printer, {}, {}, {}};
-        const Result<Resumption> found = find_resumption(printer, file);
-        REQUIRE(found.ok());
-        job.resumption = *found;
-        const Result<SimulationReport> resumed = simulate(job);
-        REQUIRE_MESSAGE(resumed.ok(), (resumed.ok() ? "" : to_string(resumed.error())));
-        CHECK(resumed->within_limits());
-        return end_mm(*resumed, config::axis_e);
-    };
-    // As far as the layer's begin has it: then the file is followed as it is.
-    const double as_in_file_mm = pushed_mm(500);
-    CHECK(pushed_mm(0) == doctest::Approx(as_in_file_mm - 0.5).epsilon(1e-4));
-    CHECK(pushed_mm(2'500) == doctest::Approx(as_in_file_mm + 2).epsilon(1e-4));
-    std::filesystem::remove(file + ".journal");
-}
-
-TEST_CASE("resumption 5: after a loss of power in a change of filament the print went on without") {
-    const config::Printer printer = config::generic_printer();
-    const std::string file =
-        write_print("resume_unloaded", {draw_square, draw_square}, {}, [](auto& state) {
-            state.temperatures.push_back({{format::HeaterKind::tool, 0}, 210});
-        });
-    JournalEntry entry;
-    entry.layer = 2;
-    entry.rest_nm = 6'500'000;
-    entry.drawn_back_um = 2'000;
-    entry.is_unloaded = true;
-    write_journal(printer, file, entry);
-    const Result<Resumption> found = find_resumption(printer, file);
-    REQUIRE(found.ok());
-    CHECK(found->drawn_back_mm == 0);
-    CHECK(text_of(*found, file).find("the filament drawn out") != std::string::npos);
-    SimulationJob job{file, printer, {}, {}, {}};
-    job.resumption = *found;
-    const Result<SimulationReport> rests = simulate(job);
-    REQUIRE_FALSE(rests.ok());
-    CHECK(rests.error().message.find("the print rests") != std::string::npos);
-    job.script = {{600, Resume{}}};
-    const Result<SimulationReport> resumed = simulate(job);
-    REQUIRE_MESSAGE(resumed.ok(), (resumed.ok() ? "" : to_string(resumed.error())));
-    CHECK(resumed->within_limits());
-    const double pushed_mm = static_cast<double>(resumed->trip_steps[config::axis_e]) /
-                             printer.axes[config::axis_e].steps_per_mm;
-    CHECK(pushed_mm ==
-          doctest::Approx(printer.filament.load_mm + printer.filament.purge_mm).epsilon(1e-4));
-    CHECK(resumed->trip_steps[config::axis_z] == 2'000);
-    std::filesystem::remove(file + ".journal");
-}
-
-// Stopped while the file has the filament drawn back, and while it is pushed.
-TEST_CASE("life 7: how far the path had drawn the filament back was not noted") {
-    const config::Printer printer = nearby_printer();
-    const std::string file = write_print("drawn_back", {[](const Pen& pen) {
-                                             pen.path(40);
-                                             pen.line(1, 0);
-                                             pen.layer.dwell(1'000);
-                                             pen.layer.retract();
-                                             pen.layer.dwell(2'000);
-                                             pen.layer.unretract();
-                                             pen.line(2, 0);
-                                         }},
-                                         {}, [](auto& state) { state.retract_length_mm = 0.8; });
-    for (const bool is_drawn_back : {false, true}) {
-        gpio::MonotonicClock clock;
-        gpio::MockChip chip(line_count, clock, {});
-        bool sent = false;
-        PrintJob job{file, printer, false, [&](const Progress& now) {
-                         if (now.time_s <= (is_drawn_back ? 1.05 : 0)) return;
-                         if (!sent) std::raise(SIGTERM);
-                         sent = true;
-                     }};
-        job.journal = file + ".journal";
-        REQUIRE_FALSE(print(job, chip, clock).ok());
-        const auto entry = read_journal(job.journal);
-        REQUIRE((entry.ok() && *entry));
-        CHECK((*entry)->rest_nm.has_value());
-        CHECK((*entry)->drawn_back_um == (is_drawn_back ? 800 : 0));
-        std::filesystem::remove(job.journal);
-    }
 }
 
 TEST_CASE(
