@@ -247,8 +247,9 @@ Status simulate(const Arguments& arguments, const config::Printer& printer) {
 
 // A print that begins anew forgets what was cut off.
 void tell_forgotten(const Arguments& arguments, const config::Printer& printer) {
+    if (arguments.resume || arguments.dry_run) return;
     const Result<run::Resumption> found = run::find_resumption(printer, arguments.lyr_path);
-    if (arguments.resume || !found) return;
+    if (!found) return;
     std::string text = run::text_of(*found, arguments.lyr_path);
     text.pop_back();
     show(program,

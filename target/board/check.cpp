@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <filesystem>
 #include <map>
 
 #include "base/read_text.h"
@@ -39,6 +40,7 @@ public:
         timing();
         processor();
         watchdog();
+        recovery();
         return std::move(findings_);
     }
 
@@ -74,6 +76,7 @@ private:
     void timing();
     void processor();
     void watchdog();
+    void recovery();
 
     const Printer& printer_;
     const Board& board_;
@@ -265,6 +268,21 @@ void Check::watchdog() {
                                     "(udev)");
     else
         good("watchdog.device", device + " is there");
+}
+
+void Check::recovery() {
+    const std::string& folder = printer_.recovery_folder;
+    if (folder.empty()) return;
+    constexpr const char* what_for = ", and prints cannot be resumed after a loss of power";
+    std::error_code error;
+    const std::string place = board_.root + folder;
+    if (!std::filesystem::is_directory(place, error))
+        warn("recovery.folder", folder + " is no folder" + what_for + ": make it");
+    else if (::access(place.c_str(), W_OK | X_OK) != 0)
+        warn("recovery.folder",
+             folder + " may not be written" + what_for + ": give it to the user who prints");
+    else
+        good("recovery.folder", folder + " is there");
 }
 
 Diagnostics try_privileges() {

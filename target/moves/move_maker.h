@@ -61,6 +61,8 @@ public:
     std::span<const Instruction> made() const { return std::span(made_).first(count_); }
 
     Head head() const { return {at_, drawn_back_mm_}; }
+    // Before the first operation.
+    void begin_drawn_back(double mm) { drawn_back_mm_ = mm; }
 
 private:
     motion::Point position(const format::Point& point) const {

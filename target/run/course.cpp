@@ -68,8 +68,10 @@ Result<bool> follow(std::span<const LineEvent> events, Executor& executor, Cours
 
 void LayerLog::begin(std::span<const LayerBegin> layers, std::int64_t shift_ns) {
     const std::lock_guard lock(mutex_);
-    for (const LayerBegin& layer : layers)
-        coming_.push_back({layer.time_ns + shift_ns, layer.layer, layer.speed_factor});
+    for (const LayerBegin& layer : layers) {
+        coming_.push_back(layer);
+        coming_.back().time_ns += shift_ns;
+    }
 }
 
 LayerBegin LayerLog::at(std::int64_t time_ns) {

@@ -33,6 +33,7 @@ public:
     Result<bool> next(std::vector<LineEvent>& events);
 
     void heed_speed(const std::atomic<float>& factor) { steps_.heed_speed(factor); }
+    void begin_drawn_back(double mm) { steps_.begin_drawn_back(mm); }
 
     const StepStream& steps() const { return steps_; }
     const PulseSchedule& schedule() const { return schedule_; }

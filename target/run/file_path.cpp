@@ -56,7 +56,7 @@ void FilePath::visit(const format::LayerStart& layer) {
     for (const format::Fan& fan : state.fans) visit(fan);
     visit(format::Tool{state.tool});
     const double drawn_back_mm = state.retracted_mm;
-    if (first_layer_) drawn_back_mm_ = drawn_back_mm;
+    if (first_layer_) drawn_back_mm_ = begins_drawn_back_mm_.value_or(drawn_back_mm);
     first_layer_ = false;
     draw_back(drawn_back_mm);
     const AxisValues start_mm = position(layer.start);

@@ -46,6 +46,9 @@ public:
     FilePath(format::Reader reader, const std::array<double, 3>& start_mm,
              double filament_diameter_mm);
 
+    // The filament is drawn back so far, and not as the first layer has it. Before the first next().
+    void begin_drawn_back(double mm) { begins_drawn_back_mm_ = mm; }
+
     // The next curve, or false at the end; then `curve` is as it was.
     Result<bool> next(PathCurve& curve);
     const PathTotals& totals() const { return totals_; }
@@ -88,6 +91,7 @@ private:
     AxisValues at_mm_{};
     double feed_error_mm_ = 0;
     double drawn_back_mm_ = 0;
+    std::optional<double> begins_drawn_back_mm_;
     bool first_layer_ = true;
     double sure_tool_c_ = 0;
     PathTotals totals_;

@@ -29,6 +29,10 @@ public:
 
     // The next instruction, or none at the end of the file.
     Result<std::optional<Instruction>> next();
+    // Before that.
+    void begin_drawn_back(double mm) { maker_.begin_drawn_back(mm); }
+    // Of the filament, when the instruction is carried out.
+    double drawn_back_mm() const { return maker_.head().drawn_back_mm.value_or(0); }
 
 private:
     format::Reader reader_;

@@ -1,12 +1,13 @@
 // A slot is one sector of a disk, and the two lie in different blocks of a file system:
 //
-//     bytes 0..7   "LYRJRNL1"       32..35  layers
-//           8..15  sequence         36..39  1 at rest, 2 on the path, 0 where it is not known
-//          16..23  file's length    40..47  time_ns
-//          24..27  file's CRC       48..55  height in nm, if at rest; x and y in um, if on the path
-//          28..31  layer            56..59  CRC-32C of bytes 0..55
+//     bytes 0..7   "LYRJRNL2"       36..39  1 at rest, 2 on the path, neither where it is not known; 4 unloaded
+//           8..15  sequence         40..47  time_ns
+//          16..23  file's length    48..55  height in nm, if at rest; x and y in um, if on the path
+//          24..27  file's CRC       56..59  how far the filament is drawn back, in um
+//          28..31  layer            60..83  printer's parts
+//          32..35  layers           84..87  CRC-32C of bytes 0..83
 //
-// All numbers are little-endian.
+// All numbers are little-endian. The last character of the first eight is the version.
 
 #include "target/run/journal.h"
 
@@ -27,10 +28,11 @@
 namespace lyr::run {
 namespace {
 
-constexpr std::size_t slot_bytes = 60, checked_bytes = 56;
+constexpr std::size_t slot_bytes = 88, checked_bytes = 84;
 constexpr off_t slot_spacing = 4096;
-constexpr std::array<char, 8> magic{'L', 'Y', 'R', 'J', 'R', 'N', 'L', '1'};
-constexpr std::uint32_t at_rest = 1, on_path = 2;
+constexpr std::array<char, 8> magic{'L', 'Y', 'R', 'J', 'R', 'N', 'L', '2'};
+constexpr std::uint32_t at_rest = 1, on_path = 2, unloaded = 4;
+constexpr std::size_t printer_at = 60;
 using Slot = std::array<std::byte, slot_bytes>;
 
 template <class Number>
@@ -56,7 +58,11 @@ Slot slot_of(const JournalEntry& entry, std::uint64_t sequence) {
     put(slot, 24, entry.file.crc);
     put(slot, 28, entry.layer);
     put(slot, 32, entry.layers);
-    put(slot, 36, entry.rest_nm ? at_rest : entry.place_um ? on_path : std::uint32_t{0});
+    put(slot, 36,
+        (entry.rest_nm    ? at_rest
+         : entry.place_um ? on_path
+                          : 0) |
+            (entry.is_unloaded ? unloaded : 0));
     put(slot, 40, entry.time_ns);
     if (entry.rest_nm) {
         put(slot, 48, *entry.rest_nm);
@@ -64,6 +70,9 @@ Slot slot_of(const JournalEntry& entry, std::uint64_t sequence) {
         put(slot, 48, (*entry.place_um)[0]);
         put(slot, 52, (*entry.place_um)[1]);
     }
+    put(slot, 56, entry.drawn_back_um);
+    for (std::size_t i = 0; i < entry.printer.parts.size(); ++i)
+        put(slot, printer_at + 4 * i, entry.printer.parts[i]);
     put(slot, checked_bytes, format::crc32c(std::span(slot).first(checked_bytes)));
     return slot;
 }
@@ -77,30 +86,42 @@ std::optional<Numbered> entry_of(const Slot& slot) {
     if (std::memcmp(slot.data(), magic.data(), magic.size()) != 0) return std::nullopt;
     const std::uint32_t crc = format::crc32c(std::span(slot).first(checked_bytes));
     if (get<std::uint32_t>(slot, checked_bytes) != crc) return std::nullopt;
-    Numbered read{get<std::uint64_t>(slot, 8),
-                  {{get<std::uint64_t>(slot, 16), get<std::uint32_t>(slot, 24)},
-                   get<std::uint32_t>(slot, 28),
-                   get<std::uint32_t>(slot, 32),
-                   get<std::int64_t>(slot, 40),
-                   {},
-                   {}}};
-    const auto whereabouts = get<std::uint32_t>(slot, 36);
-    if (whereabouts == at_rest) read.entry.rest_nm = get<std::int64_t>(slot, 48);
-    if (whereabouts == on_path)
-        read.entry.place_um = {get<std::int32_t>(slot, 48), get<std::int32_t>(slot, 52)};
+    Numbered read{get<std::uint64_t>(slot, 8), {}};
+    JournalEntry& entry = read.entry;
+    entry.file = {get<std::uint64_t>(slot, 16), get<std::uint32_t>(slot, 24)};
+    for (std::size_t i = 0; i < entry.printer.parts.size(); ++i)
+        entry.printer.parts[i] = get<std::uint32_t>(slot, printer_at + 4 * i);
+    entry.layer = get<std::uint32_t>(slot, 28);
+    entry.layers = get<std::uint32_t>(slot, 32);
+    entry.time_ns = get<std::int64_t>(slot, 40);
+    const auto state = get<std::uint32_t>(slot, 36);
+    if (state & at_rest) entry.rest_nm = get<std::int64_t>(slot, 48);
+    if (state & on_path)
+        entry.place_um = {get<std::int32_t>(slot, 48), get<std::int32_t>(slot, 52)};
+    entry.drawn_back_um = get<std::int32_t>(slot, 56);
+    entry.is_unloaded = (state & unloaded) != 0;
     return read;
 }
 
-std::optional<Numbered> latest(int descriptor) {
-    std::optional<Numbered> found;
+struct Slots {
+    std::optional<Numbered> latest;
+    bool is_empty = true;
+    bool has_other_version = false;
+};
+
+Slots read_slots(int descriptor) {
+    Slots slots;
     for (const off_t place : {off_t{0}, slot_spacing}) {
         Slot slot{};
         const ssize_t count = ::pread(descriptor, slot.data(), slot.size(), place);
+        if (count > 0) slots.is_empty = false;
+        slots.has_other_version |= std::memcmp(slot.data(), magic.data(), magic.size() - 1) == 0 &&
+                                   static_cast<char>(slot[magic.size() - 1]) != magic.back();
         if (count != static_cast<ssize_t>(slot.size())) continue;
         const std::optional<Numbered> read = entry_of(slot);
-        if (read && (!found || read->sequence > found->sequence)) found = read;
+        if (read && (!slots.latest || read->sequence > slots.latest->sequence)) slots.latest = read;
     }
-    return found;
+    return slots;
 }
 
 Diagnostic failed(ExitStatus status, const std::string& what, const std::string& path) {
@@ -141,9 +162,17 @@ Result<std::optional<JournalEntry>> read_journal(const std::string& path) {
     const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
     if (descriptor < 0 && errno == ENOENT) return std::optional<JournalEntry>();
     if (descriptor < 0) return failed(ExitStatus::input, "cannot read the journal", path);
-    const std::optional<Numbered> found = latest(descriptor);
+    const Slots slots = read_slots(descriptor);
     ::close(descriptor);
-    return found ? std::optional(found->entry) : std::nullopt;
+    if (slots.latest) return std::optional(slots.latest->entry);
+    if (slots.is_empty) return std::optional<JournalEntry>();
+    return Diagnostic{Severity::error,
+                      ExitStatus::input,
+                      slots.has_other_version
+                          ? "the journal was written by another version of lyrrun"
+                          : "the journal is damaged, or the power failed before its first entry "
+                            "was written: no entry is whole",
+                      {.file = path}};
 }
 
 Result<Journal> Journal::open(const std::string& path) {
@@ -157,24 +186,26 @@ Result<Journal> Journal::open(const std::string& path) {
         return busy;
     }
     sync_folder_of(path);
-    const std::optional<Numbered> before = latest(descriptor);
-    return Journal(path, descriptor, before ? before->sequence : 0);
+    const Slots before = read_slots(descriptor);
+    return Journal(path, descriptor, before.latest ? before.latest->sequence : 0, before.is_empty);
 }
 
 Journal::Journal(Journal&& other) noexcept
     : path_(std::move(other.path_)),
       descriptor_(std::exchange(other.descriptor_, -1)),
-      sequence_(other.sequence_) {}
+      sequence_(other.sequence_),
+      is_empty_(other.is_empty_) {}
 
 Journal::~Journal() {
     if (descriptor_ < 0) return;
     // A print that did not begin leaves nothing behind.
-    if (sequence_ == 0) remove();
+    if (is_empty_) remove();
     ::close(descriptor_);
 }
 
 Status Journal::write(const JournalEntry& entry) {
     const Slot slot = slot_of(entry, sequence_ + 1);
+    is_empty_ = false;
     const off_t place = (sequence_ + 1) % 2 == 0 ? 0 : slot_spacing;
     errno = ENOSPC;  // of a write that was cut short
     const ssize_t written = ::pwrite(descriptor_, slot.data(), slot.size(), place);

@@ -4,7 +4,8 @@
 //
 // Contract
 //  1. read_journal() gives the latest entry that is whole. A write that was cut at any byte leaves that or the one before;
-//     a byte that was changed at any place loses the entry that it belongs to, and never makes another one of it.
+//     a byte that was changed at any place loses the entry that it belongs to, and never makes another one of it. A file
+//     without a whole entry is an error, and one by another version of this program is told as such.
 //  2. Journal::write() returns when the entry is on the disk (fdatasync), and never while the other slot is at risk.
 //  3. A JournalWriter does so on a thread of its own, since a memory card may take seconds: post() returns at once, and of
 //     entries that wait for the disk only the latest is kept. An error is told once.
@@ -21,6 +22,7 @@
 #include <thread>
 
 #include "base/diagnostic.h"
+#include "target/run/printer_identity.h"
 
 namespace lyr::run {
 
@@ -34,16 +36,19 @@ Result<FileIdentity> identity_of(const std::string& path);
 
 struct JournalEntry {
     FileIdentity file;
+    PrinterIdentity printer;
     std::uint32_t layer = 0;  // that the head was in, from 1; 0: before the first
     std::uint32_t layers = 0;
-    std::int64_t time_ns = 0;  // of the plan
+    std::int64_t time_ns = 0;  // of the plan, in all since the print was begun
     // Where the head was, if that was noted: its height at rest, or else x and y on the path.
     std::optional<std::int64_t> rest_nm;
     std::optional<std::array<std::int32_t, 2>> place_um;
+    std::int32_t drawn_back_um = 0;  // of the filament
+    bool is_unloaded = false;        // which was drawn out
     friend bool operator==(const JournalEntry&, const JournalEntry&) = default;
 };
 
-// None: no file, or none with a whole entry. Errors (status input): it cannot be read.
+// None: no file, or an empty one. Errors (status input): it cannot be read, or nothing in it can be used.
 Result<std::optional<JournalEntry>> read_journal(const std::string& path);
 
 class Journal {
@@ -60,12 +65,16 @@ public:
     void remove();
 
 private:
-    Journal(std::string path, int descriptor, std::uint64_t sequence)
-        : path_(std::move(path)), descriptor_(descriptor), sequence_(sequence) {}
+    Journal(std::string path, int descriptor, std::uint64_t sequence, bool is_empty)
+        : path_(std::move(path)),
+          descriptor_(descriptor),
+          sequence_(sequence),
+          is_empty_(is_empty) {}
 
     std::string path_;
     int descriptor_;
     std::uint64_t sequence_;  // of the entry written last
+    bool is_empty_;
 };
 
 class JournalWriter {

@@ -47,14 +47,17 @@ Life::Life(const config::Printer& printer, PrintControl& control, Course& course
       course_(course),
       layers_(layers),
       desk_(desk),
-      print_(std::move(print)) {}
+      print_(std::move(print)),
+      message_(print_.message) {}
+
+double Life::time_s() const {
+    return static_cast<double>(before_ns_ + course_.time_ns.load()) / ns_per_s;
+}
 
 void Life::tick(double now_s) {
-    if (!begun_s_) begun_s_ = now_s;
+    if (!begun_s_) begun_s_ = left_since_s_ = now_s;
     now_s_ = now_s;
-    const LayerBegin place = layers_.at(course_.time_ns.load(std::memory_order_acquire));
-    layer_ = std::max(layer_, place.layer);
-    planned_factor_ = static_cast<double>(place.speed_factor);
+    look();
     note();
     while (const std::optional<Command> command = control_.take()) serve(*command);
     if (const auto pause = desk_.now().pause; pause && phase_ == Phase::printing) {
@@ -67,6 +70,15 @@ void Life::tick(double now_s) {
     }
     advance();
     publish(state(), true);
+}
+
+// Where the path is.
+void Life::look() {
+    const LayerBegin place = layers_.at(course_.time_ns.load(std::memory_order_acquire));
+    if (place.layer == 0) return;
+    layer_ = std::max(layer_, place.layer);
+    planned_factor_ = static_cast<double>(place.speed_factor);
+    drawn_back_on_path_mm_ = static_cast<double>(place.drawn_back_mm);
 }
 
 void Life::serve(const Command& command) {
@@ -193,7 +205,10 @@ bool Life::can_push() const {
 }
 
 void Life::make(std::span<const Leg> legs, const motion::Point& from) {
-    Result<Trip> trip = plan_trip(printer_, from, legs, course_.levels.load());
+    // Before the path, the drivers are switched on by it.
+    const gpio::LineMask levels =
+        course_.started.load() ? course_.levels.load() : line_layout(printer_).enable;
+    Result<Trip> trip = plan_trip(printer_, from, legs, levels);
     if (!trip) {
         message_ = "the head stays where it is: " + trip.error().message;
         return;
@@ -251,7 +266,8 @@ motion::Point Life::head() const {
 
 void Life::keep_journal(JournalWriter* journal, const FileIdentity& identity) {
     journal_ = journal;
-    noted_ = {identity, layer_, print_.layers, 0, rest_nm(), {}};
+    noted_ = {identity, identity_of(printer_), layer_,      print_.layers, before_ns_, rest_nm(),
+              {},       drawn_back_um(),       is_unloaded_};
     // What an earlier print left there must not be resumed any more.
     if (journal_) journal_->post(noted_);
 }
@@ -264,16 +280,31 @@ void Life::begin_with(const Resumption& resumption, bool is_lifted) {
     parked_at_ = {printer_.start_mm[0], printer_.start_mm[1], printer_.start_mm[2]};
     if (!is_lifted) parked_at_.z = resumption.stopped_z_mm;
     is_to_lift_ = !is_lifted;
+    before_ns_ = resumption.entry.time_ns;
+    drawn_back_on_path_mm_ = resumption.drawn_back_mm;
+    is_unloaded_ = awaits_filament_ = resumption.entry.is_unloaded;
     course_.wanted_pace.store(0);
     phase_ = Phase::heating;
 }
 
-// Before the path: the drivers are switched on by it.
 void Life::lift() {
-    is_to_lift_ = false;
     const Leg leg{{parked_at_.x, parked_at_.y, printer_.start_mm[2]}, 0, printer_.pause.speed_mm_s};
-    course_.levels.store(line_layout(printer_).enable);
     make(std::span(&leg, 1), parked_at_);
+}
+
+// These two: lifted, and before the path.
+void Life::load() {
+    const config::FilamentSettings& filament = printer_.filament;
+    const Leg leg{parked_at_, filament.load_mm + filament.purge_mm, filament.speed_mm_s};
+    make(std::span(&leg, 1), parked_at_);
+}
+
+void Life::rest_for_filament() {
+    awaits_filament_ = false;
+    reason_ = ChangeFilament{};
+    rest_since_s_ = now_s_;
+    phase_ = Phase::resting;
+    message_ = "the filament was drawn out when the print was cut off: put it in, then resume";
 }
 
 void Life::hear_of_journal() {
@@ -287,9 +318,18 @@ void Life::hear_of_journal() {
 // A height that is too low prints in the air; one that is too high would drive the nozzle into the part. So it is
 // parked from when it has arrived to well before it leaves, and before the path where it was found.
 std::optional<std::int64_t> Life::rest_nm() const {
-    const bool has_not_left = phase_ == Phase::heating && !course_.started.load();
-    if (phase_ != Phase::resting && !has_not_left) return std::nullopt;
+    const bool stands = phase_ == Phase::heating || (phase_ == Phase::returning && !is_to_lift_);
+    if (phase_ != Phase::resting && (course_.started.load() || !stands)) return std::nullopt;
     return std::llround(parked_at_.z * nm_per_mm);
+}
+
+bool Life::is_on_path() const {
+    return course_.started.load() && (phase_ == Phase::printing || phase_ == Phase::braking);
+}
+
+std::int32_t Life::drawn_back_um() const {
+    return static_cast<std::int32_t>(
+        std::lround((drawn_back_on_path_mm_ + drawn_back_mm_) * um_per_mm));
 }
 
 void Life::note() {
@@ -298,6 +338,9 @@ void Life::note() {
     JournalEntry entry = noted_;
     entry.layer = layer_;
     entry.rest_nm = rest_nm();
+    // On the path it changes too often to be kept, and is mostly not drawn back at all.
+    entry.drawn_back_um = is_on_path() ? 0 : drawn_back_um();
+    entry.is_unloaded = is_unloaded_;
     // Over a crooked bed the height of the head depends on its place, which is worth a write now and then.
     constexpr double place_interval_s = 1;
     if (!printer_.mesh.heights_mm.empty() && now_s_ - noted_s_ >= place_interval_s) {
@@ -311,15 +354,19 @@ void Life::note() {
 
 void Life::post(const JournalEntry& entry) {
     noted_ = entry;
-    noted_.time_ns = course_.time_ns.load();
+    noted_.time_ns = before_ns_ + course_.time_ns.load();
     noted_s_ = now_s_;
     journal_->post(noted_);
 }
 
 void Life::note_rest() {
     if (!journal_ || !course_.started.load()) return;
+    look();
     JournalEntry entry = noted_;
+    entry.layer = layer_;
     entry.rest_nm = std::llround(head().z * nm_per_mm);
+    entry.drawn_back_um = drawn_back_um();
+    entry.is_unloaded = is_unloaded_;
     entry.place_um.reset();
     post(entry);
 }
@@ -336,7 +383,10 @@ void Life::go_back() {
     if (cancels()) return parked();
     phase_ = Phase::returning;
     if (is_to_lift_) return lift();
-    if (!course_.started.load()) return;
+    if (!course_.started.load()) {
+        if (is_unloaded_ && !awaits_filament_) load();
+        return;
+    }
     const double filament_mm_s = printer_.axes[config::axis_e].max_speed_mm_s;
     const config::FilamentSettings& filament = printer_.filament;
     const double load_mm = is_unloaded_ ? filament.load_mm + filament.purge_mm : 0;
@@ -351,12 +401,18 @@ void Life::go_back() {
 }
 
 void Life::returned() {
-    is_unloaded_ = false;
-    if (!course_.started.load()) lifted_steps_ = course_.steps();
+    drawn_back_mm_ = 0;
+    if (is_to_lift_) {
+        is_to_lift_ = false;
+        lifted_steps_ = course_.steps();
+        parked_at_.z = printer_.start_mm[config::axis_z];
+    }
+    if (!awaits_filament_) is_unloaded_ = false;
     if (cancels() || rests_again_) {
         rests_again_ = false;
         return park();
     }
+    if (awaits_filament_) return rest_for_filament();
     phase_ = Phase::printing;
     paused_s_ += now_s_ - left_since_s_;
     desk_.end_pause();
@@ -393,7 +449,7 @@ void Life::publish(PrintState state, bool is_position_known) {
     status.layers = print_.layers;
     status.position_mm = {head.x, head.y, head.z};
     status.is_position_known = is_position_known;
-    status.time_s = static_cast<double>(course_.time_ns.load()) / ns_per_s;
+    status.time_s = time_s();
     status.elapsed_s = now_s_ - begun_s_.value_or(now_s_);
     status.estimated_s = print_.estimated_s;
     status.heaters = heat.heaters;

@@ -17,9 +17,11 @@
 //  5. What cannot be done as things are is refused, and status().message says why.
 //  6. Commands take effect within the next tick; a speed above that of the file does with moves that are not planned yet.
 //  7. With a journal, each layer is noted there when the head begins it, where the head is parked, over a crooked bed once a
-//     second where it is in the layer, and how high it came to rest when it was stopped; a journal that cannot be written
-//     is told, and is no reason to stop.
-//  8. A print that resumes after it was cut off begins with heat, then the head is lifted, unless that was done.
+//     second where it is in the layer, and how high it came to rest when it was stopped; and of the filament, how far it
+//     is drawn back while the head is away from the path or was stopped, and whether it was drawn out. A journal that
+//     cannot be written is told, and is no reason to stop.
+//  8. A print that resumes after it was cut off begins with heat, then the head is lifted, unless that was done. If the
+//     filament was drawn out it rests then for the next one, which is pushed in before the path begins.
 
 #pragma once
 
@@ -42,6 +44,7 @@ struct LifeOf {
     std::string file;
     std::uint32_t layers = 0;
     double estimated_s = 0;
+    std::string message{};  // what is known to be wrong from the start
 };
 
 class Life {
@@ -70,6 +73,8 @@ public:
     void end(const Status& result, bool is_position_known);
 
     std::uint32_t layer() const { return layer_; }
+    // Of the plan, since the print was first begun.
+    double time_s() const;
     // From leaving the path to being back.
     double paused_s() const { return paused_s_; }
     const std::optional<Diagnostic>& journal_error() const { return journal_error_; }
@@ -99,10 +104,16 @@ private:
     void rest();
     void go_back();
     void lift();
+    void load();
+    void rest_for_filament();
+    void look();
     void note();
     void post(const JournalEntry& entry);
     // Of a head that stands still away from the path.
     std::optional<std::int64_t> rest_nm() const;
+    bool is_on_path() const;
+    // By the path and by a pause.
+    std::int32_t drawn_back_um() const;
     // Before going back, and not for ever.
     void wait_for_heat();
     void hear_of_journal();
@@ -133,9 +144,10 @@ private:
     double speed_factor_ = 1, planned_factor_ = 1;  // wanted, and of the path where the head is
     Trip trip_;                                     // while the motion makes it
     motion::Point left_at_, parked_at_;
-    double drawn_back_mm_ = 0;
+    double drawn_back_mm_ = 0, drawn_back_on_path_mm_ = 0;
     bool is_unloaded_ = false;
-    bool rests_again_ = false;  // as soon as it has returned
+    bool awaits_filament_ = false;  // before the path begins
+    bool rests_again_ = false;      // as soon as it has returned
     std::array<bool, config::heater_count> standby_{};
     std::optional<double>
         cold_by_hand_c_;  // what the tool was set to in a rest, if no filament can be pushed then
@@ -144,6 +156,7 @@ private:
     JournalEntry noted_;
     double noted_s_ = 0;
     std::optional<Diagnostic> journal_error_;
+    std::int64_t before_ns_ = 0;    // of the plan, until it was cut off
     bool is_to_lift_ = false;       // before the path begins
     StepPositions lifted_steps_{};  // by that lift
     std::string message_;

@@ -143,6 +143,7 @@ Status open(const Watched& watched, const PrintJob& job, const Inspection& inspe
     PrintStatus status = shared.control.status();
     status.layers = inspection.totals.layers;
     status.estimated_s = inspection.header.summary.estimated_time_s;
+    status.time_s = watched.life.time_s();
     Opening opening(shared.control, shared.desk, watched.signals, std::move(status),
                     [&](double now_s) { look_after(watched, now_s); });
     const Status ready = job.before(chip, clock, [&] { return opening.asked(); });
@@ -173,8 +174,7 @@ void watch(const Watched& watched, const PrintJob& job, const Inspection& inspec
         life.tick(now_s);
         if (!job.progress || now_s < next_progress_s) continue;
         next_progress_s = now_s + progress_s;
-        job.progress({life.layer(), inspection.totals.layers,
-                      static_cast<double>(shared.course.time_ns.load()) / ns_per_s,
+        job.progress({life.layer(), inspection.totals.layers, life.time_s(),
                       inspection.header.summary.estimated_time_s});
     }
 }
@@ -186,7 +186,7 @@ Diagnostic stopped(const Shared& shared, const Life& life) {
     return {Severity::error,
             ExitStatus::stopped,
             why + formatted("; in layer %u after %.1f s; all lines are released", life.layer(),
-                            static_cast<double>(shared.course.time_ns.load()) / ns_per_s),
+                            life.time_s()),
             {}};
 }
 
@@ -202,27 +202,11 @@ struct Prepared {
     PrintFile file;
     Inspection inspection;
     Diagnostics notes;
-    std::optional<Journal> journal;  // none: none is asked for, or cannot be had, which is a note
-    FileIdentity identity;
+    PrintJournal journal;
 };
 
 bool can_resume(const PrintJob& job) {
     return job.control || job.printer.inputs[config::input_pause];
-}
-
-// Its file is read to its end, which heaters must not wait for.
-void open_journal(const PrintJob& job, Prepared& prepared) {
-    if (job.journal.empty()) return;
-    const Result<FileIdentity> file = identity_of(job.file);
-    Result<Journal> journal = Journal::open(job.journal);
-    if (file && journal) {
-        prepared.identity = *file;
-        prepared.journal.emplace(std::move(*journal));
-        return;
-    }
-    prepared.notes.push_back(file ? journal.error() : file.error());
-    prepared.notes.back().severity = Severity::warning;
-    prepared.notes.back().message += "; this print cannot be resumed after a loss of power";
 }
 
 Result<Prepared> prepare(const PrintJob& job) {
@@ -231,11 +215,12 @@ Result<Prepared> prepare(const PrintJob& job) {
     if (!file) return file.error();
     Result<Inspection> inspection = inspect(*file, job.printer);
     if (!inspection) return inspection.error();
-    Prepared prepared{std::move(*file), std::move(*inspection), {}, {}, {}};
+    Prepared prepared{std::move(*file), std::move(*inspection), {}, {}};
     const Status possible = check_demands(prepared.inspection, job.printer, job.no_heat,
                                           prepared.notes, can_resume(job));
     if (!possible) return possible.error();
-    open_journal(job, prepared);
+    if (!job.journal.empty())
+        open_journal(job.printer, job.file, job.journal, prepared.journal, prepared.notes);
     if (const Status same = prepared.file.check(); !same) return same.error();
     lock_memory(prepared.notes);
     try_precedence(job.printer.timing.cpu, prepared.notes);
@@ -287,15 +272,16 @@ void report_on(const Executor& executor, const gpio::TracingClock& clock, PrintR
 
 // All that a print has beside its job, until its threads have ended.
 struct Running {
-    Running(const PrintJob& job, const Inspection& inspection, gpio::GpioChip& chip,
-            gpio::Clock& clock, Heating* heating)
+    Running(const PrintJob& job, const Prepared& prepared, gpio::GpioChip& chip, gpio::Clock& clock,
+            Heating* heating)
         : printer(job.resumption ? lifted(job.printer, *job.resumption) : job.printer),
           shared(job.control ? *job.control : own_control, {heating != nullptr, can_resume(job)}),
           traced(clock),
           executor(chip, traced, executor_timing(printer), shared.stop_requests, &shared.marks,
                    &shared.course.wanted_pace),
           life(printer, shared.control, shared.course, shared.layers, shared.desk,
-               {job.file, inspection.totals.layers, inspection.header.summary.estimated_time_s}) {
+               {job.file, prepared.inspection.totals.layers,
+                prepared.inspection.header.summary.estimated_time_s, prepared.journal.why_none}) {
         if (heating) life.cut = [heating] { (void)heating->stage->all_off(); };
         if (job.resumption) life.begin_with(*job.resumption, job.is_lifted);
     }
@@ -334,7 +320,7 @@ Result<PrintReport> run(const PrintJob& job, Prepared& prepared, gpio::GpioChip&
                         gpio::Clock& clock, Around around) {
     Heating* const heating = around.heating;
     const Inspection& inspection = prepared.inspection;
-    Running running(job, inspection, chip, clock, heating);
+    Running running(job, prepared, chip, clock, heating);
     Shared& shared = running.shared;
     Life& life = running.life;
     Result<format::Reader> reader =
@@ -344,6 +330,7 @@ Result<PrintReport> run(const PrintJob& job, Prepared& prepared, gpio::GpioChip&
                                                    inspection.filament_diameter_mm, &shared.orders);
     if (!stream) return stream.error();
     stream->heed_speed(shared.course.plan_factor);
+    if (job.resumption) stream->begin_drawn_back(job.resumption->drawn_back_mm);
     const StopSignals signals;
     PrintReport report;
     report.warnings = prepared.notes;
@@ -361,8 +348,8 @@ Result<PrintReport> run(const PrintJob& job, Prepared& prepared, gpio::GpioChip&
         return opened.error();
     }
     std::optional<JournalWriter> journal;
-    if (prepared.journal) journal.emplace(std::move(*prepared.journal));
-    life.keep_journal(journal ? &*journal : nullptr, prepared.identity);
+    if (prepared.journal.journal) journal.emplace(std::move(*prepared.journal.journal));
+    life.keep_journal(journal ? &*journal : nullptr, prepared.journal.file);
     shared.flow.emplace(shared.stop_requests, shared.finished);
     std::thread planner([&] { running.outcome.planned = fill(prepared.file, *stream, shared); });
     std::thread edges([&] { drive(running, chip); });

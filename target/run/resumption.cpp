@@ -23,7 +23,48 @@ double z_over_start_mm(const config::Printer& printer, const motion::Point& head
     return head.z + bed->lift_mm(head) - bed->lift_mm(start);
 }
 
+// What becomes of a journal that is there. Errors: it is another printer's.
+Status see_to(const std::string& path, const config::Printer& printer, Diagnostics& notes) {
+    const Result<std::optional<JournalEntry>> before = read_journal(path);
+    if (!before) {
+        notes.push_back(before.error());
+        notes.back().severity = Severity::warning;
+        notes.back().message += "; it is replaced";
+        return Done{};
+    }
+    if (!*before) return Done{};
+    const std::string different = difference((*before)->printer, identity_of(printer));
+    if (different.empty()) return Done{};
+    return Diagnostic{Severity::error,
+                      ExitStatus::output,
+                      "the journal is of a print on another printer (other " + different +
+                          ") and stays: give each printer a recovery.folder of its own",
+                      {.file = path}};
+}
+
+Status try_journal(const config::Printer& printer, const std::string& file, const std::string& path,
+                   PrintJournal& opened, Diagnostics& notes) {
+    const Result<FileIdentity> identity = identity_of(file);
+    if (!identity) return identity.error();
+    Result<Journal> journal = Journal::open(path);
+    if (!journal) return journal.error();
+    if (Status ours = see_to(path, printer, notes); !ours) return ours;
+    opened.file = *identity;
+    opened.journal.emplace(std::move(*journal));
+    return Done{};
+}
+
 }  // namespace
+
+void open_journal(const config::Printer& printer, const std::string& file, const std::string& path,
+                  PrintJournal& opened, Diagnostics& notes) {
+    const Status tried = try_journal(printer, file, path, opened, notes);
+    if (tried) return;
+    Diagnostic& note = notes.emplace_back(tried.error());
+    note.severity = Severity::warning;
+    note.message += "; this print cannot be resumed after a loss of power";
+    opened.why_none = note.message;
+}
 
 std::string journal_path(const config::Printer& printer, const std::string& file) {
     if (printer.recovery_folder.empty()) return file + ".journal";
@@ -35,13 +76,21 @@ Result<Resumption> find_resumption(const config::Printer& printer, const std::st
     const std::string path = journal_path(printer, file);
     const Result<std::optional<JournalEntry>> entry = read_journal(path);
     if (!entry) return entry.error();
-    if (!*entry) return refused("nothing to resume: there is no journal " + path, file);
+    if (!*entry)
+        return refused("nothing to resume: there is no journal, or nothing in it: " + path, file);
+    const std::string different = difference((*entry)->printer, identity_of(printer));
+    if (!different.empty())
+        return refused("it was begun on another printer, or this one was changed since: other " +
+                           different + "; resume it with that printer's file as it was",
+                       file);
     const Result<FileIdentity> identity = identity_of(file);
     if (!identity) return identity.error();
     if (!(*identity == (*entry)->file))
         return refused("the file is not the one that was being printed: it was changed since",
                        file);
-    Resumption resumption{**entry, std::max(1u, (*entry)->layer) - 1, 0, {}};
+    Resumption resumption{**entry, std::max(1u, (*entry)->layer) - 1, 0, {}, 0};
+    if (!resumption.entry.is_unloaded)
+        resumption.drawn_back_mm = resumption.entry.drawn_back_um / um_per_mm;
     Result<format::Reader> reader = open_file(file, resumption.first_layer);
     if (!reader) return reader.error();
     if (const auto start = reader->next(); !start) return start.error();
@@ -66,10 +115,11 @@ config::Printer lifted(const config::Printer& printer, const Resumption& resumpt
 
 std::string text_of(const Resumption& resumption, const std::string& file) {
     return formatted(
-        "%s was cut off in layer %u of %u, %.0f s into the print, the head at z %.3f mm%s\n",
+        "%s was cut off in layer %u of %u, %.0f s into the print, the head at z %.3f mm%s%s\n",
         file.c_str(), resumption.first_layer + 1, resumption.entry.layers,
         static_cast<double>(resumption.entry.time_ns) / ns_per_s, resumption.stopped_z_mm,
-        resumption.entry.rest_nm ? ", at rest" : "");
+        resumption.entry.rest_nm ? ", at rest" : "",
+        resumption.entry.is_unloaded ? ", the filament drawn out" : "");
 }
 
 }  // namespace lyr::run

@@ -94,7 +94,10 @@ public:
         if (job.heat_watch)
             heat_.observe(
                 [this](double time_s) { job_.heat_watch(time_s, heat_.any_heater_on()); });
-        if (job.resumption) life_.begin_with(*job.resumption, false);
+        if (job.resumption) {
+            life_.begin_with(*job.resumption, false);
+            file_.begin_drawn_back(job.resumption->drawn_back_mm);
+        }
         if (is_lived()) clock_.on_tick = [this](double time_s) { live(time_s); };
     }
 
@@ -294,6 +297,7 @@ Result<SimulationReport> simulate(const SimulationJob& asked) {
     Result<EventStream> stream =
         EventStream::open(job.file, job.printer, diameter_mm, wanted, first_layer);
     if (!stream) return stream.error();
+    if (job.resumption) stream->begin_drawn_back(job.resumption->drawn_back_mm);
     Result<format::Reader> reader = open_file(job.file, first_layer);
     if (!reader) return reader.error();
     Simulation simulation(job, *inspection, std::move(*stream),

@@ -108,19 +108,20 @@ Status StepStream::plan() {
 }
 
 void StepStream::note_begin(const motion::PlannedMove& move) {
-    float factor = factor_;
-    for (; !factors_.empty() && factors_.front().before_move <= popped_; factors_.pop_front())
-        factor = factors_.front().factor;
-    if (move.tag != layer_ || factor != factor_)
-        begun_.push_back({move.start_ns, move.tag, factor});
+    bool is_new = move.tag != layer_;
+    for (; !manners_.empty() && manners_.front().before_move <= popped_; manners_.pop_front()) {
+        manner_ = manners_.front();
+        is_new = true;
+    }
     layer_ = move.tag;
-    factor_ = factor;
+    if (is_new) begun_.push_back({move.start_ns, layer_, manner_.factor, manner_.drawn_back_mm});
 }
 
 Status StepStream::plan(motion::Move move) {
     const float factor = speed_factor_ ? speed_factor_->load(std::memory_order_relaxed) : 1;
-    if (factor != planned_factor_) factors_.push_back({pushed_, factor});
-    planned_factor_ = factor;
+    const auto drawn_back_mm = static_cast<float>(interpreter_.drawn_back_mm());
+    if (factor != planned_.factor || drawn_back_mm != planned_.drawn_back_mm)
+        manners_.push_back(planned_ = {pushed_, factor, drawn_back_mm});
     move.speed_mm_s *= static_cast<double>(factor);
     if (const Status pushed = planner_.push(move); !pushed) {
         Diagnostic error = pushed.error();

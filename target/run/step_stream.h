@@ -25,11 +25,12 @@
 namespace lyr::run {
 
 // From this time on, of the steps or of the events, the head is in this layer, from 1, and goes at so many times the file's
-// speeds.
+// speeds; the filament is drawn back so far, or about to be.
 struct LayerBegin {
     std::int64_t time_ns = 0;
     std::uint32_t layer = 0;
     float speed_factor = 1;
+    float drawn_back_mm = 0;
 };
 
 class StepStream {
@@ -52,7 +53,9 @@ public:
     std::uint32_t layer() const { return layer_; }
     // Multiplies the speeds of moves that are not planned yet.
     void heed_speed(const std::atomic<float>& factor) { speed_factor_ = &factor; }
-    // Layers that the batch has begun, and changes of that factor.
+    // The filament is drawn back so far, and not as the first layer has it. Before the first next().
+    void begin_drawn_back(double mm) { interpreter_.begin_drawn_back(mm); }
+    // Layers that the batch has begun, and changes of that factor and of how far the filament is drawn back.
     const std::vector<LayerBegin>& begun() const { return begun_; }
 
 private:
@@ -62,10 +65,11 @@ private:
         HeatOrder order;
     };
 
-    // A factor and the number of the move from which it holds.
-    struct Factor {
-        std::uint64_t before_move;
-        float factor;
+    // How moves are made, and the number of the one from which that holds.
+    struct Manner {
+        std::uint64_t before_move = 0;
+        float factor = 1;
+        float drawn_back_mm = 0;
     };
 
     StepStream(std::string path, Interpreter interpreter, motion::Planner planner,
@@ -93,9 +97,9 @@ private:
     std::vector<motion::PlannedMove> moves_;
     std::vector<motion::StepEvent> events_;
     std::uint32_t layer_ = 0;
-    float factor_ = 1, planned_factor_ = 1;  // of the move begun last, and of that planned last
+    Manner manner_, planned_;  // of the move begun last, and of that planned last
     const std::atomic<float>* speed_factor_ = nullptr;
-    std::deque<Factor> factors_;
+    std::deque<Manner> manners_;
     std::vector<LayerBegin> begun_;
     std::int64_t last_ns_ = 0;  // of the steps so far
 };

@@ -1,10 +1,47 @@
 // lyrrun from the outside: scripts, and going on with a print that was cut off.
 
 #include "apps/program.h"
+#include "target/run/cut_off.h"
 #include "target/run/print_files.h"
 
 using namespace lyr;
 using namespace lyr::tests;
+
+namespace {
+
+void draw_short(const Pen& pen) {
+    pen.path();
+    pen.line(1, 0);
+}
+
+// A printer, p.toml, and a print on it that was cut off in its second layer.
+struct CutOff {
+    Folder folder;
+    std::string file, journal;
+
+    explicit CutOff(const std::string& name, const run::JournalEntry& what = {})
+        : folder("lyrrun_" + name),
+          file(write_print(name, std::vector<Drawing>(3, draw_short))),
+          journal(file + ".journal") {
+        folder.write("p.toml", printer());
+        fs::remove(journal);
+        cut(what);
+    }
+    ~CutOff() { fs::remove(journal); }
+
+    static std::string printer(const std::string& more = "") {
+        return more + text_of(fs::path(LYR_FIXTURES) / "printers/cartesian.toml");
+    }
+    void cut(run::JournalEntry entry) const {
+        entry.layer = 2;
+        write_journal(*config::read_printer(folder / "p.toml"), file, entry);
+    }
+    Ended lyrrun(const std::string& options) const {
+        return folder.run("lyrrun " + file + " --printer p.toml " + options);
+    }
+};
+
+}  // namespace
 
 TEST_CASE("lyrrun: a script pauses a simulation and lets it go on, and its path is the same") {
     const Folder folder("lyrrun_life");
@@ -36,4 +73,92 @@ TEST_CASE("lyrrun: without a journal there is nothing to resume") {
         check_failure(folder.run("lyrrun " + file + option), "lyrrun", 3, "nothing to resume");
     check_failure(folder.run("lyrrun " + file + " --resume --resumable"), "lyrrun", 2,
                   "--resumable");
+}
+
+TEST_CASE("lyrrun: a print that was cut off was resumed with any other printer's file") {
+    const CutOff print("other_printer");
+    const Ended found = print.lyrrun("--resumable");
+    CHECK(found.status == 0);
+    CHECK(found.out.find("layer 2 of 6, 5 s into the print") != std::string::npos);
+    const auto with = [&](const std::string& change) {
+        print.folder.write("p.toml", CutOff::printer());
+        CHECK(print.folder.run("sed -i '" + change + "' p.toml").status == 0);
+        CHECK(text_of(print.folder / "p.toml") != CutOff::printer());
+    };
+    with("s/^max_speed_mm_s.*/max_speed_mm_s = 9/");
+    CHECK(print.lyrrun("--resumable").status == 0);
+    with("0,/^steps_per_mm.*/s//steps_per_mm = 160/");
+    for (const char* option : {"--resumable", "--resume", "--resume --simulate --no-heat"})
+        check_failure(print.lyrrun(option), "lyrrun", 3, "other steps_per_mm; resume it with");
+    with("s/^name.*/name = \"neighbour\"/");
+    check_failure(print.lyrrun("--resumable"), "lyrrun", 3, "other name; resume it with");
+}
+
+TEST_CASE("lyrrun: a print took away the journal of another printer's print of the same file") {
+    const CutOff print("neighbour");
+    const std::string before = text_of(print.journal);
+    print.folder.write("p.toml", CutOff::printer());
+    CHECK(print.folder.run("sed -i 's/^name.*/name = \"neighbour\"/' p.toml").status == 0);
+    // There are no such lines here; what the print is without is told before it looks for them.
+    const Ended ended = print.lyrrun("--no-heat");
+    CHECK(ended.status != 0);
+    CHECK(ended.err.find("another printer (other name) and stays") != std::string::npos);
+    CHECK(text_of(print.journal) == before);
+}
+
+TEST_CASE("lyrrun: a journal that is damaged, empty or of another version was told as none") {
+    const CutOff print("damaged");
+    const auto says = [&](const std::string& bytes, const std::string& what) {
+        std::ofstream(print.journal, std::ios::binary) << bytes;
+        for (const char* option : {"--resumable", "--resume --simulate --no-heat"})
+            check_failure(print.lyrrun(option), "lyrrun", 3, what);
+    };
+    std::string bytes = text_of(print.journal);
+    bytes[4096 + 30] ^= 1;
+    says(bytes, "the journal is damaged");
+    says("", "nothing in it");
+    says("LYRJRNL1" + std::string(52, '\x07'), "written by another version of lyrrun");
+}
+
+TEST_CASE("lyrrun: a dry run said that it forgot where a print was cut off, and did not") {
+    const CutOff print("dry");
+    const std::string before = text_of(print.journal);
+    const auto written = fs::last_write_time(print.journal);
+    // Somebody prints it meanwhile.
+    const Result<run::Journal> held = run::Journal::open(print.journal);
+    for (const char* option : {"", "--resume "}) {
+        const Ended ended = print.lyrrun(std::string("--dry-run --no-heat --socket s ") + option);
+        CAPTURE(option);
+        CHECK(ended.status == 0);
+        CHECK(ended.err.find("begins anew") == std::string::npos);
+        CHECK(text_of(print.journal) == before);
+        CHECK(fs::last_write_time(print.journal) == written);
+    }
+}
+
+TEST_CASE("lyrrun: a print resumes with the next filament after it was cut off without") {
+    run::JournalEntry out;
+    out.is_unloaded = true;
+    out.rest_nm = 7'000'000;
+    const CutOff print("unloaded", out);
+    CHECK(print.lyrrun("--resumable").out.find("at rest, the filament drawn out") !=
+          std::string::npos);
+    print.folder.write("go.txt", "100 resume\n");
+    const std::string options = "--resume --simulate --no-heat";
+    check_failure(print.lyrrun(options), "lyrrun", 8, "the print rests");
+    CHECK(print.lyrrun(options + " --script go.txt").status == 0);
+}
+
+TEST_CASE("lyrrun: that recovery.folder is missing was not found by --check") {
+    const CutOff print("no_folder");
+    print.folder.write("p.toml", CutOff::printer("recovery.folder = \"missing\"\n"));
+    const Ended checked = print.folder.run("lyrrun --check --printer p.toml");
+    CHECK(checked.out.find("warning  recovery.folder: missing is no folder") != std::string::npos);
+    const Ended ended = print.lyrrun("--no-heat");
+    const std::size_t told = ended.err.find("cannot write the journal: No such file or directory");
+    REQUIRE(told != std::string::npos);
+    CHECK(told < ended.err.find("GPIO"));
+    fs::create_directory(print.folder / "missing");
+    CHECK(print.folder.run("lyrrun --check --printer p.toml")
+              .out.find("ok       recovery.folder: missing is there") != std::string::npos);
 }

@@ -3,6 +3,7 @@
 #include "target/board/check.h"
 
 #include <doctest/doctest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -196,6 +197,27 @@ TEST_CASE("check 1: what makes a board late, or leaves it unwatched, is a warnin
     CHECK(says(problem(findings, "timing"), Severity::warning, "--measure-latency"));
     CHECK(says(problem(findings, "privileges"), Severity::warning, "ulimit"));
     CHECK(worst(findings) == Severity::warning);
+}
+
+TEST_CASE("check 1: that journals have no place was found by the first loss of power") {
+    const Folder folder;
+    config::Printer printer = good_printer();
+    printer.recovery_folder = "/var/lyr";
+    const auto finding = [&] {
+        return problem(check(printer, good_board(folder)), "recovery.folder");
+    };
+    CHECK(says(finding(), Severity::warning, "/var/lyr is no folder"));
+    folder.put("var/lyr", "");
+    CHECK(says(finding(), Severity::warning, "/var/lyr is no folder"));
+    folder.remove("var/lyr");
+    folder.put("var/lyr/part.lyr.journal", "");
+    for (const Finding& found : check(printer, good_board(folder)))
+        if (found.subject == "recovery.folder") CHECK(found.severity == Severity::note);
+    // The superuser may write anywhere.
+    if (::geteuid() == 0) return;
+    std::filesystem::permissions(folder.root() + "/var/lyr", std::filesystem::perms::owner_read);
+    CHECK(says(finding(), Severity::warning, "may not be written"));
+    std::filesystem::permissions(folder.root() + "/var/lyr", std::filesystem::perms::owner_all);
 }
 
 TEST_CASE("check 5: any bytes in any file are findings") {

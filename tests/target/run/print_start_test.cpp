@@ -247,7 +247,10 @@ TEST_CASE("print 7: a print that does not begin leaves no journal, and the one b
     {
         Result<Journal> journal = Journal::open(job.journal);
         REQUIRE(journal.ok());
-        REQUIRE(journal->write({*identity_of(file), 3, 6, 0, {}, {}}).ok());
+        JournalEntry entry;
+        entry.file = *identity_of(file);
+        entry.layer = 3;
+        REQUIRE(journal->write(entry).ok());
     }
     CHECK_FALSE(print(job, chip, clock).ok());
     const auto kept = read_journal(job.journal);

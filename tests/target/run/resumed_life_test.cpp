@@ -26,14 +26,14 @@ struct Resumed {
     std::optional<JournalWriter> writer;
     Life life{printer, control, course, layers, desk, {"p.lyr", 6, 0}};
 
-    explicit Resumed(bool is_lifted, const std::string& name)
+    explicit Resumed(bool is_lifted, const std::string& name, const JournalEntry& entry = {})
         : journal(std::filesystem::temp_directory_path() / ("lyr_" + name + ".journal")) {
         std::filesystem::remove(journal);
         printer.start_mm = {35, 25, is_lifted ? found_mm + 5 : 11.5};
         Result<Journal> opened = Journal::open(journal);
         REQUIRE(opened.ok());
         writer.emplace(std::move(*opened));
-        life.begin_with({{}, 2, found_mm, {}}, is_lifted);
+        life.begin_with({entry, 2, found_mm, {}, entry.drawn_back_um / 1e3}, is_lifted);
         life.keep_journal(&*writer, {});
     }
     ~Resumed() { std::filesystem::remove(journal); }
@@ -42,6 +42,30 @@ struct Resumed {
         if (command) REQUIRE(control.post(*command));
         life.tick(begin_s + time_s);
         return control.status();
+    }
+    // All heat is there.
+    PrintStatus heated(double time_s) {
+        desk.take();
+        HeatNow now;
+        now.reached = true;
+        desk.publish(now);
+        return after(time_s);
+    }
+    // The motion has made it.
+    StepPositions end_trip() {
+        const Trip* trip = course.trip.load();
+        REQUIRE(trip);
+        StepPositions steps{};
+        gpio::LineMask before = course.levels.load();
+        for (const LineEvent& event : *trip) {
+            for (std::size_t i = 0; i < steps.size(); ++i)
+                if (~before & event.levels & step_bit(i))
+                    steps[i] += (event.levels & direction_bit(i)) != 0 ? 1 : -1;
+            before = event.levels;
+        }
+        for (std::size_t i = 0; i < steps.size(); ++i) course.trip_steps[i] += steps[i];
+        course.trip.store(nullptr);
+        return steps;
     }
     // As a cut of the power would leave it.
     JournalEntry noted() {
@@ -115,4 +139,106 @@ TEST_CASE("life 5: filament was unloaded before the path began, and never loaded
     CHECK(status.state == PrintState::paused);
     CHECK(status.message.find("once the path has begun") != std::string::npos);
     CHECK(print.course.trip.load() == nullptr);
+}
+
+TEST_CASE("life 8: filament that was drawn out is put in before the path, the head lifted") {
+    for (const bool is_lifted : {false, true}) {
+        CAPTURE(is_lifted);
+        JournalEntry entry;
+        entry.is_unloaded = true;
+        Resumed print(is_lifted, "unloaded", entry);
+        print.after(0);
+        print.heated(1);
+        if (!is_lifted) CHECK(print.end_trip()[config::axis_z] == 2'000);
+        const PrintStatus rests = print.after(2);
+        CHECK(rests.state == PrintState::paused);
+        CHECK(rests.message.find("put it in") != std::string::npos);
+        CHECK(rests.position_mm[2] == doctest::Approx(11.5));
+        CHECK(print.course.wanted_pace.load() == 0);
+        // Again and again, and in a pause of its own, it stays so.
+        CHECK(print.after(3, Pause{}).state == PrintState::paused);
+        CHECK(print.after(4, Resume{}).state == PrintState::resuming);
+        CHECK(print.heated(5).state == PrintState::resuming);
+        const StepPositions loaded = print.end_trip();
+        CHECK(loaded[config::axis_z] == 0);
+        CHECK(static_cast<double>(loaded[config::axis_e]) /
+                  print.printer.axes[config::axis_e].steps_per_mm ==
+              doctest::Approx(110).epsilon(1e-3));
+        CHECK(print.after(6).state == PrintState::printing);
+        CHECK(print.course.wanted_pace.load() == 1);
+        print.after(7);
+        CHECK_FALSE(print.noted().is_unloaded);
+    }
+}
+
+TEST_CASE("life 7: until filament is in again the journal says that it is out, and how high") {
+    for (const int ticks : {0, 1, 2, 3}) {
+        CAPTURE(ticks);
+        JournalEntry entry;
+        entry.is_unloaded = true;
+        Resumed print(false, "still_out", entry);
+        if (ticks > 0) print.heated(1);  // lifts
+        if (ticks > 1) print.end_trip(), print.after(2);
+        if (ticks > 2) print.after(3, Resume{}), print.heated(4);  // loads
+        if (ticks != 1) print.after(5);
+        const JournalEntry noted = print.noted();
+        CHECK(noted.is_unloaded);
+        // A lift that is under way is not known.
+        if (ticks != 1) CHECK(noted.rest_nm == (ticks > 1 ? 11'500'000 : 6'500'000));
+    }
+}
+
+TEST_CASE("life 7: a pause notes how far the filament is drawn back, by the path and by itself") {
+    Resumed print(true, "drawn_back");
+    print.printer.heaters = {};
+    print.heated(0);
+    CHECK(print.after(1).state == PrintState::printing);
+    const LayerBegin begin{0, 4, 1, 0.75f};
+    print.layers.begin(std::span(&begin, 1), 0);
+    print.course.started.store(true);
+    print.after(2);
+    print.after(3, Pause{});
+    print.course.at_rest.store(true);
+    CHECK(print.after(4).state == PrintState::pausing);
+    print.end_trip();
+    CHECK(print.after(5).state == PrintState::paused);
+    print.after(6);
+    const JournalEntry parked = print.noted();
+    CHECK(parked.layer == 4);
+    CHECK(parked.drawn_back_um == 2'750);
+    CHECK(parked.rest_nm == 16'500'000);
+    CHECK_FALSE(parked.is_unloaded);
+}
+
+TEST_CASE("life 7: the path draws back now and then, which a cut on its way is not to believe") {
+    Resumed print(true, "on_path");
+    print.heated(0);
+    print.after(1);
+    const LayerBegin begin{0, 4, 1, 0.75f};
+    print.layers.begin(std::span(&begin, 1), 0);
+    print.course.started.store(true);
+    print.after(2);
+    CHECK(print.noted().drawn_back_um == 0);
+}
+
+TEST_CASE("life 7: how far into the print it was cut off counted since the last resumption") {
+    JournalEntry entry;
+    entry.time_ns = 5'000'000'000;
+    Resumed print(true, "time", entry);
+    print.heated(0);
+    CHECK(print.after(1).time_s == doctest::Approx(5));
+    const LayerBegin begin{0, 4, 1, 0};
+    print.layers.begin(std::span(&begin, 1), 0);
+    print.course.started.store(true);
+    print.course.time_ns.store(3'000'000'000);
+    CHECK(print.after(2).time_s == doctest::Approx(8));
+    CHECK(print.noted().time_ns == 8'000'000'000);
+}
+
+TEST_CASE("life 8: a resumed print reported a pause as long as the board had been on") {
+    Resumed print(true, "long_pause");
+    print.heated(0);
+    print.heated(7);
+    CHECK(print.after(8).state == PrintState::printing);
+    CHECK(print.life.paused_s() < 10);
 }

@@ -12,6 +12,7 @@
 #include <fstream>
 
 #include "target/gpio/mock_chip.h"
+#include "target/run/cut_off.h"
 #include "target/run/patient_printer.h"
 #include "target/run/print.h"
 #include "target/run/print_files.h"
@@ -38,12 +39,14 @@ double end_mm(const SimulationReport& report, std::size_t axis) {
            static_cast<double>(report.positions[axis]) / report.printer.axes[axis].steps_per_mm;
 }
 
-void write_entry(const std::string& file, std::uint32_t layer,
+void write_entry(const config::Printer& printer, const std::string& file, std::uint32_t layer,
                  std::optional<std::int64_t> rest_nm = {},
                  std::optional<std::array<std::int32_t, 2>> place_um = {}) {
-    Result<Journal> journal = Journal::open(file + ".journal");
-    REQUIRE(journal.ok());
-    REQUIRE(journal->write({*identity_of(file), layer, 6, 5'000'000'000, rest_nm, place_um}).ok());
+    JournalEntry entry;
+    entry.layer = layer;
+    entry.rest_nm = rest_nm;
+    entry.place_um = place_um;
+    write_journal(printer, file, entry);
 }
 
 }  // namespace
@@ -62,7 +65,7 @@ TEST_CASE(
     for (const std::uint32_t layer : {0u, 1u, 2u, 4u, 6u}) {
         for (const bool is_parked : {false, true}) {
             CAPTURE(layer);
-            write_entry(file, layer,
+            write_entry(printer, file, layer,
                         is_parked ? std::optional(std::int64_t{6'500'000}) : std::nullopt);
             const Result<Resumption> found = find_resumption(printer, file);
             REQUIRE_MESSAGE(found.ok(), (found.ok() ? "" : to_string(found.error())));
@@ -89,7 +92,7 @@ TEST_CASE(
     "resumption 4: a crooked bed's difference between the layer's begin and start_mm counts") {
     config::Printer printer = config::generic_printer();
     const std::string file = write_print("crooked", {draw_square, draw_arcs, draw_square});
-    write_entry(file, 2);
+    write_entry(printer, file, 2);
     const Result<Resumption> flat = find_resumption(printer, file);
     REQUIRE(flat.ok());
     // A plane: of the same slope everywhere, and as high at the start as the mesh's other corner is far.
@@ -97,17 +100,18 @@ TEST_CASE(
     printer.mesh.area_mm = {0, 0, width_mm, width_mm};
     printer.mesh.heights_mm = {{0, slope * width_mm}, {0, slope * width_mm}};
     printer.start_mm = {150, 20, 0.2};
+    write_entry(printer, file, 2);
     const Result<Resumption> crooked = find_resumption(printer, file);
     REQUIRE(crooked.ok());
     CHECK(crooked->stopped_z_mm ==
           doctest::Approx(flat->stopped_z_mm + slope * (flat->state.start_x_mm - 150)));
     // Where it was in the layer is noted.
-    write_entry(file, 2, {}, std::array<std::int32_t, 2>{120'000, 45'500});
+    write_entry(printer, file, 2, {}, std::array<std::int32_t, 2>{120'000, 45'500});
     const Result<Resumption> within = find_resumption(printer, file);
     REQUIRE(within.ok());
     CHECK(within->stopped_z_mm == doctest::Approx(flat->stopped_z_mm + slope * (120 - 150)));
     // Where it was parked its height is known, and counts from start_mm already.
-    write_entry(file, 2, 6'500'000);
+    write_entry(printer, file, 2, 6'500'000);
     const Result<Resumption> parked = find_resumption(printer, file);
     REQUIRE(parked.ok());
     CHECK(parked->stopped_z_mm == doctest::Approx(6.5));
@@ -174,18 +178,36 @@ TEST_CASE("resumption 2: no journal, or another file, is refused") {
         return found.error().message;
     };
     CHECK(refusal().find("no journal") != std::string::npos);
-    write_entry(file, 2);
+    write_entry(printer, file, 2);
     CHECK(find_resumption(printer, file).ok());
     write_print("resume_other", {draw_square, draw_circles});
     CHECK(refusal().find("changed") != std::string::npos);
     write_print("resume_other", {draw_square, draw_arcs});
     CHECK(find_resumption(printer, file).ok());
     std::filesystem::resize_file(file + ".journal", 20);
-    CHECK(refusal().find("no journal") != std::string::npos);
+    CHECK(refusal().find("damaged") != std::string::npos);
+    std::filesystem::resize_file(file + ".journal", 0);
+    CHECK(refusal().find("nothing in it") != std::string::npos);
     std::filesystem::remove(file + ".journal");
     config::Printer elsewhere = printer;
     elsewhere.recovery_folder = "/var/lib/lyr";
     CHECK(journal_path(elsewhere, "/home/a/part.lyr") == "/var/lib/lyr/part.lyr.journal");
+}
+
+TEST_CASE("resumption 2: a print was resumed with the file of any other printer") {
+    const config::Printer printer = config::generic_printer();
+    const std::string file = write_print("resume_printer", {draw_square, draw_arcs});
+    write_entry(printer, file, 2);
+    config::Printer mended = printer, other = printer;
+    for (config::Axis& axis : mended.axes) axis.max_speed_mm_s /= 2;
+    mended.heaters[config::heater_tool]->guard.high_c -= 20;
+    CHECK(find_resumption(mended, file).ok());
+    other.axes[config::axis_x].steps_per_mm = 160;
+    const Result<Resumption> refused = find_resumption(other, file);
+    REQUIRE_FALSE(refused.ok());
+    CHECK(refused.error().status == ExitStatus::input);
+    CHECK(refused.error().message.find("other steps_per_mm;") != std::string::npos);
+    std::filesystem::remove(file + ".journal");
 }
 
 TEST_CASE(
@@ -242,11 +264,63 @@ TEST_CASE("print 7: a journal that cannot be written is a warning, and the print
     CHECK(report->warnings[0].message.find("cannot be resumed") != std::string::npos);
     PrintControl control;
     job.control = &control;
+    gpio::MockChip third(line_count, clock, {});
+    CHECK(print(job, third, clock).ok());
+    CHECK(control.status().message.find("cannot write the journal") != std::string::npos);
+    CHECK(control.status().message.find("loss of power") != std::string::npos);
     job.journal = "/dev/full";
     gpio::MockChip again(line_count, clock, {});
     CHECK(print(job, again, clock).ok());
     CHECK(control.status().message.find("cannot write the journal") != std::string::npos);
     CHECK(std::filesystem::exists("/dev/full"));  // which is not its own to remove
+}
+
+TEST_CASE("print 7: a print of the same file took another printer's journal away") {
+    const config::Printer printer = nearby_printer();
+    const std::string file = write_print("neighbour", {draw_small});
+    config::Printer other = printer;
+    other.name = "neighbour";
+    write_entry(other, file, 4);
+    const auto before = read_journal(file + ".journal");
+    PrintControl control;
+    gpio::MonotonicClock clock;
+    gpio::MockChip chip(line_count, clock, {});
+    PrintJob job{file, printer, false, {}};
+    job.control = &control;
+    job.journal = file + ".journal";
+    const Result<PrintReport> report = print(job, chip, clock);
+    REQUIRE(report.ok());
+    REQUIRE_FALSE(report->warnings.empty());
+    const std::string& told = report->warnings[0].message;
+    CHECK(told.find("another printer (other name)") != std::string::npos);
+    CHECK(told.find("cannot be resumed") != std::string::npos);
+    CHECK(report->told >= 1);
+    CHECK(control.status().message == told);
+    const auto after = read_journal(file + ".journal");
+    REQUIRE((after.ok() && *after));
+    CHECK(*after == *before);
+    // Its own goes when it is done.
+    write_entry(printer, file, 4);
+    gpio::MockChip again(line_count, clock, {});
+    CHECK(print(job, again, clock).ok());
+    CHECK_FALSE(std::filesystem::exists(file + ".journal"));
+}
+
+TEST_CASE(
+    "print 7: a journal that is damaged or of another version is replaced, and that is told") {
+    const std::string file = write_print("replaced", {draw_small});
+    for (const std::string& bytes : {std::string("LYRJRNL1"), std::string(500, 'x')}) {
+        std::ofstream(file + ".journal") << bytes;
+        gpio::MonotonicClock clock;
+        gpio::MockChip chip(line_count, clock, {});
+        PrintJob job{file, nearby_printer(), false, {}};
+        job.journal = file + ".journal";
+        const Result<PrintReport> report = print(job, chip, clock);
+        REQUIRE(report.ok());
+        REQUIRE_FALSE(report->warnings.empty());
+        CHECK(report->warnings[0].message.find("it is replaced") != std::string::npos);
+        CHECK_FALSE(std::filesystem::exists(job.journal));
+    }
 }
 
 TEST_CASE("print 6: pauses, in a real print's threads, leave the path as it is") {
