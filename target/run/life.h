@@ -13,12 +13,13 @@
 //     rests on.
 //  3. A pause that lasts for longer than printer.toml says lets tool, bed and chamber go cold.
 //  4. A cancel takes all heat away, parks too, and ends by a request to stop; an emergency stop does so at once, and calls
-//     `cut`.
+//     `cut`. At the end of the path the head parks as for a pause, at the heat that the file left; commands come too late then.
 //  5. What cannot be done as things are is refused, and status().message says why.
 //  6. Commands take effect within the next tick; a speed above that of the file does with moves that are not planned yet.
 //  7. With a journal, each layer is noted there when the head begins it, where the head is parked, over a crooked bed once a
 //     second where it is in the layer, and how high it came to rest when it was stopped; a journal that cannot be written
 //     is told, and is no reason to stop.
+//     At the end of the path there is nothing to resume any more, and it goes.
 //  8. A print that resumes after it was cut off begins with heat, then the head is lifted, unless that was done.
 
 #pragma once
@@ -91,6 +92,7 @@ private:
 
     void serve(const Command& command);
     void rest_for(Command reason);
+    void finish();
     void resume();
     void set_temperature(const SetTemperature& set);
     void advance();
@@ -135,7 +137,8 @@ private:
     motion::Point left_at_, parked_at_;
     double drawn_back_mm_ = 0;
     bool is_unloaded_ = false;
-    bool rests_again_ = false;  // as soon as it has returned
+    bool has_finished_ = false;  // the path
+    bool rests_again_ = false;   // as soon as it has returned
     std::array<bool, config::heater_count> standby_{};
     std::optional<double>
         cold_by_hand_c_;  // what the tool was set to in a rest, if no filament can be pushed then

@@ -46,6 +46,7 @@ struct Shared {
     PrintControl& control;
     StopRequests& stop_requests = control.stop_requests();
     EventRing ring{ring_events};
+    std::optional<LineEvent> last;  // of the path, once the ring is closed
     Course course;
     LayerLog layers;
     HeatDesk desk;
@@ -86,6 +87,7 @@ Status fill(const PrintFile& file, EventStream& stream, Shared& shared) {
             ++shared.stop_requests;
         }
         more = next.ok() && *next;
+        if (next && !more) shared.last = events.back(), events.pop_back();
         shared.layers.begin(stream.steps().begun(), stream.schedule().shift_ns());
         std::span<const LineEvent> left(events);
         while (!left.empty() && !shared.finished.load()) {
@@ -116,7 +118,8 @@ Result<bool> drain(Executor& executor, gpio::Clock& clock, Shared& shared) {
         if (!executed || !*executed) return executed;
         shared.ring.drop(events.size());
     }
-    return true;
+    if (!shared.last) return true;
+    return finish(*shared.last, executor, shared.course, clock, shared.stop_requests);
 }
 
 // Nobody tends heaters: pauses that the file asks for are still seen to.
