@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/constants.h"
 #include "base/text.h"
@@ -109,6 +110,7 @@ void Life::rest_for(Command reason) {
     // One that rests does so already, and one that is about to go on rests again.
     if (phase_ == Phase::heating) phase_ = Phase::resting, rest_since_s_ = now_s_;
     rests_again_ = phase_ == Phase::returning;
+    goes_on_ = false;
     reason_ = reason;
     message_.clear();
     if (cancels()) {
@@ -147,6 +149,15 @@ void Life::unload() {
 }
 
 void Life::resume() {
+    const bool comes_to_rest = phase_ == Phase::braking || phase_ == Phase::parking;
+    if ((comes_to_rest || rests_again_) && !cancels() && !has_finished_) {
+        if (comes_to_rest && changes_filament())
+            return refuse(Resume{}, "the filament is still being drawn out");
+        // Both take their turn where the head is on its way.
+        goes_on_ = comes_to_rest;
+        rests_again_ = false;
+        return;
+    }
     if (phase_ != Phase::resting) return refuse(Resume{}, "the print does not rest");
     if (cold_by_hand_c_)
         return refuse(
@@ -241,6 +252,7 @@ void Life::parked() {
         course_.wanted_pace.store(1);
         course_.at_end.store(false, std::memory_order_release);
     }
+    if (std::exchange(goes_on_, false)) resume();
     if (!cancels()) return;
     ended_by_ = "cancelled; the head is parked";
     phase_ = Phase::over;
@@ -387,12 +399,13 @@ PrintState Life::state() const {
             return desk_.now().waits ? PrintState::heating : PrintState::printing;
         case Phase::braking:
         case Phase::parking:
-            return cancels() ? PrintState::stopping : PrintState::pausing;
+            if (cancels()) return PrintState::stopping;
+            return goes_on_ ? PrintState::resuming : PrintState::pausing;
         case Phase::resting:
             return PrintState::paused;
         case Phase::heating:
         case Phase::returning:
-            return PrintState::resuming;
+            return rests_again_ ? PrintState::pausing : PrintState::resuming;
         case Phase::over:
             break;
     }

@@ -7,7 +7,8 @@
 // Contract
 //  1. A pause brings the head to rest on its path; then the filament is drawn back, the head lifted and parked. What
 //     resumes goes back the same way. All in all no motor has moved then, but the extruder's by what a change of filament
-//     purges, and the path goes on with the event at which it was left.
+//     purges, and the path goes on with the event at which it was left. A pause that comes while the print goes on, and the
+//     other way round, is carried out next, unless the opposite comes before.
 //  2. Filament is moved only if the tool has min_extrude_c, before a resume it is heated and waited for. A tool that was set
 //     to less in a pause must be set to more before it. Heat that has not come within an hour is taken away, and the print
 //     rests on.
@@ -139,6 +140,7 @@ private:
     bool is_unloaded_ = false;
     bool has_finished_ = false;  // the path
     bool rests_again_ = false;   // as soon as it has returned
+    bool goes_on_ = false;       // as soon as it is parked
     std::array<bool, config::heater_count> standby_{};
     std::optional<double>
         cold_by_hand_c_;  // what the tool was set to in a rest, if no filament can be pushed then

@@ -50,3 +50,44 @@ TEST_CASE("life 2: a resume waited for a bed that was set lower to get cold") {
     // What is too cold is waited for.
     CHECK(paused_s("bed 75") > 25);
 }
+
+TEST_CASE("life 1: a resume that came while the head still parked was refused") {
+    const std::string file = write_print("turn_round", {draw_square, draw_arcs, draw_circles});
+    const SimulationReport plain = turned(file, "", true);
+    // While it brakes, while it parks, and after a pause that withdraws the first resume.
+    for (const char* script : {"2 pause\n2.1 resume", "2 pause\n2.6 resume", "2 pause\n3 resume",
+                               "2 pause\n2.1 resume\n2.2 pause\n2.3 resume"}) {
+        CAPTURE(script);
+        const SimulationReport report = turned(file, script, true);
+        CHECK(report.positions == plain.positions);
+        CHECK(report.trip_steps == plain.trip_steps);
+        CHECK(report.notes.empty());
+        CHECK(report.paused_s > 1);
+        CHECK(report.paused_s < 8);
+    }
+    const SimulationReport withdrawn =
+        turned(file, "2 pause\n2.1 resume\n2.2 pause\n60 resume", true);
+    CHECK(withdrawn.paused_s > 55);
+    CHECK(withdrawn.notes.empty());
+}
+
+TEST_CASE("life 1: a resume withdraws the pause that was to come when the head is back") {
+    const std::string file = write_print("turn_again", {draw_square, draw_arcs, draw_circles});
+    const SimulationReport plain = turned(file, "", true);
+    const SimulationReport report =
+        turned(file, "2 pause\n30 resume\n30.2 pause\n30.4 resume", true);
+    CHECK(report.positions == plain.positions);
+    CHECK(report.notes.empty());
+    CHECK(report.paused_s < 34);
+}
+
+TEST_CASE("life 5: a filament that is still being drawn out is not pushed in again") {
+    const std::string file = write_print("drawn_out", {draw_square, draw_arcs, draw_circles});
+    SimulationJob job{file, printer_of_turns(), {}, {}, {}};
+    job.no_heat = true;
+    job.script = *parse_script("2 change_filament\n3 resume\n60 resume", "script");
+    const Result<SimulationReport> report = simulate(job);
+    REQUIRE(report.ok());
+    REQUIRE(report->notes.size() == 1);
+    CHECK(report->notes[0].message.find("still being drawn out") != std::string::npos);
+}
