@@ -48,15 +48,15 @@ Key range_key(const std::string& axis, std::size_t number) {
 
 void append_axis(std::vector<Key>& keys, std::size_t i) {
     const std::string axis = "axis." + std::string(axis_names[i]) + '.';
-    const auto axis_number = [&](const char* name, double high, double Axis::*field) {
-        keys.push_back(
-            required(number(axis + name, {0, high, true}, [i, field](Draft& draft, double v) {
-                draft.printer.axes[i].*field = v;
-            })));
+    const auto axis_number = [&](const char* name, Range range, double Axis::*field) {
+        keys.push_back(required(number(axis + name, range, [i, field](Draft& draft, double v) {
+            draft.printer.axes[i].*field = v;
+        })));
     };
-    axis_number("steps_per_mm", 1e5, &Axis::steps_per_mm);
-    axis_number("max_speed_mm_s", 1e4, &Axis::max_speed_mm_s);
-    axis_number("max_acceleration_mm_s2", 1e6, &Axis::max_acceleration_mm_s2);
+    // Below, a move of a hand's width takes minutes: no machine, but a slip of the pen.
+    axis_number("steps_per_mm", {0.1, 1e5}, &Axis::steps_per_mm);
+    axis_number("max_speed_mm_s", {0.1, 1e4}, &Axis::max_speed_mm_s);
+    axis_number("max_acceleration_mm_s2", {1, 1e6}, &Axis::max_acceleration_mm_s2);
     if (i != axis_e) keys.push_back(range_key(axis, i));
     keys.push_back(flag(axis + "invert",
                         [i](Draft& draft, bool value) { draft.printer.axes[i].invert = value; }));

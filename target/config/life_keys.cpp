@@ -8,7 +8,7 @@ namespace lyr::config {
 namespace {
 
 constexpr Range lengths_mm{0, 2'000};
-constexpr Range speeds_mm_s{0, 10'000, true};
+constexpr Range speeds_mm_s{0.1, 10'000};
 // A day: who has not come by then will not.
 constexpr Range rests_s{0, 86'400};
 // The kernel counts whole seconds; a control thread that hangs for longer than a few is lost.

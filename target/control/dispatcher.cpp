@@ -106,7 +106,7 @@ std::optional<Refusal> Dispatcher::objection(const run::Command& command, PrintS
                                                        : Objection();
         },
         [&](const run::Resume&) {
-            return state == PrintState::paused ? Objection() : wrong_state("cannot resume", state);
+            return is_at_rest(state) ? Objection() : wrong_state("cannot resume", state);
         },
         [&](const run::ChangeFilament&) {
             return is_over(state) ? wrong_state("cannot change filament", state) : Objection();

@@ -17,7 +17,8 @@ Result<bool> rest(Executor& executor, Course& course, gpio::Clock& clock,
             course.tell(executor);
             course.trip.store(nullptr, std::memory_order_release);
             if (!made || !*made) return made;
-        } else if (course.wanted_pace.load(std::memory_order_relaxed) > 0) {
+        } else if (course.wanted_pace.load(std::memory_order_relaxed) > 0 &&
+                   !course.at_end.load(std::memory_order_acquire)) {
             course.at_rest.store(false, std::memory_order_release);
             executor.go_on();
             return true;
@@ -64,6 +65,14 @@ Result<bool> follow(std::span<const LineEvent> events, Executor& executor, Cours
         const Result<bool> goes_on = rest(executor, course, clock, stop_requests);
         if (!goes_on || !*goes_on) return goes_on;
     }
+}
+
+Result<bool> finish(const LineEvent& last, Executor& executor, Course& course, gpio::Clock& clock,
+                    const StopRequests& stop_requests) {
+    course.at_end.store(true);
+    const Result<bool> goes_on = rest(executor, course, clock, stop_requests);
+    if (!goes_on || !*goes_on) return goes_on;
+    return follow(std::span(&last, 1), executor, course, clock, stop_requests);
 }
 
 void LayerLog::begin(std::span<const LayerBegin> layers, std::int64_t shift_ns) {

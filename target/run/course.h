@@ -6,6 +6,7 @@
 //     only then, or with an error.
 //  2. While `at_rest`, nothing is written but a trip; that is taken off when it is over. The numbers are those at rest.
 //  3. Nothing is allocated or locked, and a trip is read only.
+//  4. finish() writes the last event of the path, but rests before it, for trips, until `at_end` is taken back.
 
 #pragma once
 
@@ -28,6 +29,7 @@ struct Course {
     std::atomic<const Trip*> trip{nullptr};
 
     std::atomic<bool> at_rest{false};
+    std::atomic<bool> at_end{false};       // of the path, but for its last event
     std::atomic<bool> started{false};      // the drivers are on, and the head is on its way
     std::atomic<std::int64_t> time_ns{0};  // of the events
     std::atomic<gpio::LineMask> levels{0};
@@ -42,6 +44,9 @@ struct Course {
 
 Result<bool> follow(std::span<const LineEvent> events, Executor& executor, Course& course,
                     gpio::Clock& clock, const StopRequests& stop_requests);
+
+Result<bool> finish(const LineEvent& last, Executor& executor, Course& course, gpio::Clock& clock,
+                    const StopRequests& stop_requests);
 
 // Which layer the head is in, and how fast it was planned: the planning thread knows long before.
 class LayerLog {

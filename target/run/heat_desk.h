@@ -6,7 +6,7 @@
 //     set holds until the next one, be it asked for here or by the path.
 //  2. A heater on standby gets no power and keeps the target that it will have again; while one is, no order of the path
 //     is carried out.
-//  3. settled(): all that was asked has been carried out since, and every heater has reached its target.
+//  3. settled(): all that was asked has been carried out since, and every heater has reached its target or is warmer.
 
 #pragma once
 
@@ -30,7 +30,7 @@ struct HeatNow {
     HeatersNow heaters{};
     double fan = 0;
     bool waits = false;                          // the path does, for a temperature
-    bool reached = false;                        // all targets
+    bool reached = false;                        // all targets, or passed
     std::optional<format::PauseReason> pause{};  // that the path asks for and waits in
 };
 

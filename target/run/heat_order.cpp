@@ -136,7 +136,9 @@ void HeatAttendant::tell() const {
     for (std::size_t i = 0; i < now.heaters.size(); ++i) {
         const thermal::HeaterStatus* status = control_ ? control_->status(i) : nullptr;
         if (status) now.heaters[i] = {true, status->temperature_c, status->target_c};
-        now.reached = now.reached && reached(i);
+        const bool is_warmer = status && status->target_c > 0 &&
+                               status->temperature_c > status->target_c + thermal::reached_c;
+        now.reached = now.reached && (is_warmer || reached(i));
     }
     now.fan = fan_;
     now.waits = waiting_ && waiting_->is_gate() && !waiting_->pause;

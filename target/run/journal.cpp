@@ -232,7 +232,6 @@ void JournalWriter::finish() {
     }
     changed_.notify_one();
     thread_.join();
-    if (removes_) journal_.remove();
 }
 
 void JournalWriter::post(const JournalEntry& entry) {
@@ -244,9 +243,11 @@ void JournalWriter::post(const JournalEntry& entry) {
 }
 
 void JournalWriter::remove() {
-    const std::lock_guard lock(mutex_);
-    waiting_.reset();
-    removes_ = true;
+    {
+        const std::lock_guard lock(mutex_);
+        removes_ = true;
+    }
+    changed_.notify_one();
 }
 
 std::optional<Diagnostic> JournalWriter::take_error() {
@@ -257,7 +258,8 @@ std::optional<Diagnostic> JournalWriter::take_error() {
 void JournalWriter::work() {
     std::unique_lock lock(mutex_);
     while (true) {
-        changed_.wait(lock, [this] { return waiting_ || ends_; });
+        changed_.wait(lock, [this] { return waiting_ || ends_ || removes_; });
+        if (removes_) return journal_.remove();
         if (!waiting_) return;
         const JournalEntry entry = *std::exchange(waiting_, std::nullopt);
         lock.unlock();

@@ -86,7 +86,7 @@ public:
 
     void post(const JournalEntry& entry);
     std::optional<Diagnostic> take_error();
-    // At the end, instead of all entries that wait.
+    // At once and for good: neither what waits nor what is posted later is written.
     void remove();
     // Writes what waits, and ends; nothing may be posted any more.
     void finish();

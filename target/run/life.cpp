@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/constants.h"
 #include "base/text.h"
@@ -116,10 +117,12 @@ float Life::pace() const {
 // Pause, ChangeFilament or Cancel.
 void Life::rest_for(Command reason) {
     if (phase_ != Phase::printing && cancels()) return refuse(reason, "it is being cancelled");
+    if (has_finished_) return refuse(reason, "the path is done");
     const bool unloads = std::holds_alternative<ChangeFilament>(reason) && !is_unloaded_;
     // One that rests does so already, and one that is about to go on rests again.
     if (phase_ == Phase::heating) phase_ = Phase::resting, rest_since_s_ = now_s_;
     rests_again_ = phase_ == Phase::returning;
+    goes_on_ = false;
     reason_ = reason;
     message_.clear();
     if (cancels()) {
@@ -132,6 +135,14 @@ void Life::rest_for(Command reason) {
     course_.wanted_pace.store(0);
     left_since_s_ = now_s_;
     phase_ = Phase::braking;
+}
+
+// A pause that has not come to rest before the end of the path comes too late.
+void Life::finish() {
+    has_finished_ = true;
+    reason_ = Pause{};
+    if (journal_) journal_->remove();
+    park();
 }
 
 void Life::unload() {
@@ -150,6 +161,15 @@ void Life::unload() {
 }
 
 void Life::resume() {
+    const bool comes_to_rest = phase_ == Phase::braking || phase_ == Phase::parking;
+    if ((comes_to_rest || rests_again_) && !cancels() && !has_finished_) {
+        if (comes_to_rest && changes_filament())
+            return refuse(Resume{}, "the filament is still being drawn out");
+        // Both take their turn where the head is on its way.
+        goes_on_ = comes_to_rest;
+        rests_again_ = false;
+        return;
+    }
     if (phase_ != Phase::resting) return refuse(Resume{}, "the print does not rest");
     if (cold_by_hand_c_)
         return refuse(
@@ -191,6 +211,8 @@ void Life::advance() {
     const bool travels = course_.trip.load(std::memory_order_acquire) != nullptr;
     if (phase_ == Phase::printing && course_.wanted_pace.load() != pace())
         course_.wanted_pace.store(pace());
+    const bool ends = course_.at_end.load() && !cancels();
+    if (ends && rests && (phase_ == Phase::printing || phase_ == Phase::braking)) return finish();
     if (phase_ == Phase::braking && rests) return park();
     if (phase_ == Phase::parking && !travels) return parked();
     if (phase_ == Phase::resting) return rest();
@@ -240,6 +262,12 @@ void Life::parked() {
     rest_since_s_ = now_s_;
     phase_ = Phase::resting;
     if (changes_filament() && !is_unloaded_) unload();
+    if (has_finished_) {
+        phase_ = Phase::over;
+        course_.wanted_pace.store(1);
+        course_.at_end.store(false, std::memory_order_release);
+    }
+    if (std::exchange(goes_on_, false)) resume();
     if (!cancels()) return;
     ended_by_ = "cancelled; the head is parked";
     phase_ = Phase::over;
@@ -421,17 +449,19 @@ void Life::returned() {
 
 PrintState Life::state() const {
     if (control_.stop_requests().load() != 0) return PrintState::stopping;
+    if (has_finished_) return PrintState::printing;
     switch (phase_) {
         case Phase::printing:
             return desk_.now().waits ? PrintState::heating : PrintState::printing;
         case Phase::braking:
         case Phase::parking:
-            return cancels() ? PrintState::stopping : PrintState::pausing;
+            if (cancels()) return PrintState::stopping;
+            return goes_on_ ? PrintState::resuming : PrintState::pausing;
         case Phase::resting:
             return PrintState::paused;
         case Phase::heating:
         case Phase::returning:
-            return PrintState::resuming;
+            return rests_again_ ? PrintState::pausing : PrintState::resuming;
         case Phase::over:
             break;
     }

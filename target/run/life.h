@@ -7,19 +7,21 @@
 // Contract
 //  1. A pause brings the head to rest on its path; then the filament is drawn back, the head lifted and parked. What
 //     resumes goes back the same way. All in all no motor has moved then, but the extruder's by what a change of filament
-//     purges, and the path goes on with the event at which it was left.
+//     purges, and the path goes on with the event at which it was left. A pause that comes while the print goes on, and the
+//     other way round, is carried out next, unless the opposite comes before.
 //  2. Filament is moved only if the tool has min_extrude_c, before a resume it is heated and waited for. A tool that was set
 //     to less in a pause must be set to more before it. Heat that has not come within an hour is taken away, and the print
 //     rests on.
 //  3. A pause that lasts for longer than printer.toml says lets tool, bed and chamber go cold.
 //  4. A cancel takes all heat away, parks too, and ends by a request to stop; an emergency stop does so at once, and calls
-//     `cut`.
+//     `cut`. At the end of the path the head parks as for a pause, at the heat that the file left; commands come too late then.
 //  5. What cannot be done as things are is refused, and status().message says why.
 //  6. Commands take effect within the next tick; a speed above that of the file does with moves that are not planned yet.
 //  7. With a journal, each layer is noted there when the head begins it, where the head is parked, over a crooked bed once a
 //     second where it is in the layer, and how high it came to rest when it was stopped; and of the filament, how far it
 //     is drawn back while the head is away from the path or was stopped, and whether it was drawn out. A journal that
-//     cannot be written is told, and is no reason to stop.
+//     cannot be written is told, and is no reason to stop. At the end of the path there is nothing to resume any more,
+//     and it goes.
 //  8. A print that resumes after it was cut off begins with heat, then the head is lifted, unless that was done. If the
 //     filament was drawn out it rests then for the next one, which is pushed in before the path begins.
 
@@ -96,6 +98,7 @@ private:
 
     void serve(const Command& command);
     void rest_for(Command reason);
+    void finish();
     void resume();
     void set_temperature(const SetTemperature& set);
     void advance();
@@ -147,7 +150,9 @@ private:
     double drawn_back_mm_ = 0, drawn_back_on_path_mm_ = 0;
     bool is_unloaded_ = false;
     bool awaits_filament_ = false;  // before the path begins
+    bool has_finished_ = false;     // the path
     bool rests_again_ = false;      // as soon as it has returned
+    bool goes_on_ = false;          // as soon as it is parked
     std::array<bool, config::heater_count> standby_{};
     std::optional<double>
         cold_by_hand_c_;  // what the tool was set to in a rest, if no filament can be pushed then

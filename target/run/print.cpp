@@ -40,6 +40,7 @@ struct Shared {
     StopRequests& stop_requests = control.stop_requests();
     // From when the path begins: what moves before it has one of its own.
     std::optional<EventFlow> flow;
+    std::optional<LineEvent> last;  // of the path, once the flow is closed
     Course course;
     LayerLog layers;
     HeatDesk desk;
@@ -79,6 +80,10 @@ Status fill(const PrintFile& file, EventStream& stream, Shared& shared) {
             ++shared.stop_requests;
         }
         more = next.ok() && *next;
+        if (next && !more) {
+            shared.last = events.back();
+            events.pop_back();
+        }
         shared.layers.begin(stream.steps().begun(), stream.schedule().shift_ns());
         shared.flow->put(events);
     }
@@ -300,12 +305,16 @@ void drive(Running& running, gpio::GpioChip& chip) {
     Shared& shared = running.shared;
     Diagnostics told_before;
     take_precedence(running.printer.timing.cpu, told_before);
-    running.outcome.executed = shared.flow->drain([&](std::span<const LineEvent> events) {
+    Result<bool>& executed = running.outcome.executed;
+    executed = shared.flow->drain([&](std::span<const LineEvent> events) {
         return follow(events, running.executor, shared.course, running.traced,
                       shared.stop_requests);
     });
+    if (executed && *executed && shared.last)
+        executed = finish(*shared.last, running.executor, shared.course, running.traced,
+                          shared.stop_requests);
     const Status released = chip.release();
-    if (!released && running.outcome.executed) running.outcome.executed = released.error();
+    if (!released && executed) executed = released.error();
     shared.finished.store(true);
 }
 

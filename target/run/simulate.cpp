@@ -73,7 +73,7 @@ public:
           heat_(job.printer, heats_ ? job.faults : std::vector<thermal::Fault>(),
                 job.line_faults.heaters),
           attendant_(orders ? *orders : no_orders_, marks_, heats ? &heat_.control() : nullptr,
-                     is_lived() ? &desk_ : nullptr),
+                     &desk_),
           clock_(heat_, attendant_, control_.stop_requests()),
           life_(job.printer, control_, course_, layers_, desk_,
                 {job.file, inspection.totals.layers, inspection.header.summary.estimated_time_s}),
@@ -107,6 +107,7 @@ public:
 
 private:
     Status pump(Executor& executor, ReplaceFile* trace);
+    Result<bool> follow(const Portion& portion, Executor& executor);
     // Waits, rests and what the head does meanwhile are no part of the plan.
     void decode(const gpio::LineWrite& write) {
         if (executor_ && executor_->on_trip()) return;
@@ -139,7 +140,7 @@ private:
     const Executor* executor_ = nullptr;
     StreamBeside stream_;
     std::uint32_t layer_ = 0;
-    std::int64_t shift_ns_ = 0;
+    std::int64_t shift_ns_ = 0, followed_ns_ = 0;  // when the path was done
     FilePath file_;
     ChecksBeside checks_;
     PulseDecoder decoder_;
@@ -180,8 +181,7 @@ Status Simulation::pump(Executor& executor, ReplaceFile* trace) {
         shift_ns_ = portion.shift_ns;
         checks_.expect(portion.moves, portion.shifts);
         layers_.begin(portion.begun, portion.shift_ns);
-        const Result<bool> executed =
-            follow(portion.events, executor, course_, clock_, control_.stop_requests());
+        const Result<bool> executed = follow(portion, executor);
         is_derailed_ = !executed.ok();
         if (!executed) return executed.error();
         if (!*executed) return why_ended();
@@ -190,6 +190,19 @@ Status Simulation::pump(Executor& executor, ReplaceFile* trace) {
         if (trace && trace->failed()) return trace->flush();
         if (asked_to_stop(executor)) return stopped();
     }
+}
+
+Result<bool> Simulation::follow(const Portion& portion, Executor& executor) {
+    std::span<const LineEvent> events(portion.events);
+    const bool is_last = !*portion.more;
+    if (is_last) events = events.first(events.size() - 1);
+    Result<bool> executed =
+        run::follow(events, executor, course_, clock_, control_.stop_requests());
+    if (!is_last || !executed || !*executed) return executed;
+    followed_ns_ = clock_.now_ns();
+    // Whoever asks nothing of a print has its head parked, too.
+    clock_.on_tick = [this](double time_s) { live(time_s); };
+    return finish(portion.events.back(), executor, course_, clock_, control_.stop_requests());
 }
 
 void Simulation::live(double time_s) {
@@ -237,7 +250,7 @@ SimulationReport Simulation::report() const {
     const auto is_speed = [](const TimedCommand& timed) {
         return std::holds_alternative<SetSpeedFactor>(timed.command);
     };
-    const double took_s = static_cast<double>(clock_.now_ns()) / ns_per_s;
+    const double took_s = static_cast<double>(followed_ns_) / ns_per_s;
     if (std::any_of(job_.script.begin(), job_.script.end(), is_speed))
         report.slowed_s = std::max(0.0, took_s - print_time_s_ - waited_s_ - report.paused_s);
     report.notes = notes_;

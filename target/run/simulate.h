@@ -87,7 +87,7 @@ struct SimulationReport {
     double waited_s = 0;            // for temperatures, beside the print time
     double paused_s = 0;            // by command or by the file
     double slowed_s = 0;            // by commands for a lower speed
-    StepPositions trip_steps{};     // that trips left behind
+    StepPositions trip_steps{};     // that trips left behind, with the one from the end of the path
     std::vector<HeatFigures> heat;  // of the heaters that had a target
     Diagnostics
         notes;  // what the file asks and a simulation passes over, what of the script was refused

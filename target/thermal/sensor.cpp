@@ -11,6 +11,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <string_view>
 
 namespace lyr::thermal {
 
@@ -40,7 +41,10 @@ public:
         double value = 0;
         const char* end = text.data() + length;
         const auto [rest, error] = std::from_chars(text.data(), end, value);
-        const bool whole = rest == end || *rest == '\n';
+        // Some drivers end it with blanks.
+        const std::string_view tail(rest, static_cast<std::size_t>(end - rest));
+        const std::size_t at = std::min(tail.find_first_not_of(" \t\r"), tail.size());
+        const bool whole = at == tail.size() || tail[at] == '\n';
         if (error != std::errc() || !whole || !std::isfinite(value))
             return unreadable(path_, "it holds no number");
         return value;

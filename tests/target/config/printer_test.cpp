@@ -127,14 +127,25 @@ TEST_CASE("printer 2: unknown keys come with line and nearest key") {
     check_error(with("[axis.e]\n", "[axis.e]\nrange_mm = [0, 1]\n"), 25, "unknown key `range_mm`");
 }
 
+TEST_CASE("printer 2: limits at which no machine ever gets anywhere were simulated for ever") {
+    check_error(with("max_acceleration_mm_s2 = 100\n", "max_acceleration_mm_s2 = 1e-9\n"), 22,
+                "from 1 to 1000000");
+    check_error(with("max_speed_mm_s = 10\n", "max_speed_mm_s = 0.01\n"), 21, "from 0.1 to 10000");
+    check_error(with("steps_per_mm = 400\n", "steps_per_mm = 1e-3\n"), 20, "from 0.1 to 100000");
+    check_error(good + "[pause]\nspeed_mm_s = 0.001\n", 29, "from 0.1 to 10000");
+    CHECK(parse_printer(with("max_acceleration_mm_s2 = 100\n", "max_acceleration_mm_s2 = 1\n"), "p")
+              .ok());
+}
+
 TEST_CASE("printer 2: wrong types and ranges come with line, rule and what was found") {
-    check_error(with("= 80\n", "= \"80\"\n"), 6, "axis.x.steps_per_mm: expected a number above 0");
+    check_error(with("= 80\n", "= \"80\"\n"), 6,
+                "axis.x.steps_per_mm: expected a number from 0.1 to 100000");
     check_error(with("= 80\n", "= 0\n"), 6, "found 0");
     check_error(with("= 80\n", "= -80\n"), 6, "found -80");
     check_error(with("= 80\n", "= nan\n"), 6, "expected a number");
     check_error(with("= 80\n", "= inf\n"), 6, "expected a number");
     check_error(with("= 80\n", "= true\n"), 6, "found true or false");
-    check_error(with("= 80\n", "= 9223372036854775807\n"), 6, "up to 100000");
+    check_error(with("= 80\n", "= 9223372036854775807\n"), 6, "from 0.1 to 100000");
     check_error(with("[0, 220]", "[220, 0]"), 9, "the first below the second");
     check_error(with("[0, 220]", "[0]"), 9, "[lowest, highest]");
     check_error(with("[0, 220]", "[0, \"220\"]"), 9, "[lowest, highest]");

@@ -97,7 +97,7 @@ TEST_CASE("dispatcher 2: what cannot be done is refused and nothing of it is don
 TEST_CASE("dispatcher 2: which command in which state") {
     const std::vector<std::pair<const char*, const char*>> allowed{
         // heating, printing, pausing, paused, resuming, stopping, done, failed
-        {"pause", "yynnynnn"}, {"resume", "nnnynnnn"},          {"cancel", "yyyyynnn"},
+        {"pause", "yynnynnn"}, {"resume", "nnyynnnn"},          {"cancel", "yyyyynnn"},
         {"stop", "yyyyyyyy"},  {"change_filament", "yyyyynnn"}, {"status", "yyyyyyyy"},
     };
     for (const auto& [command, states] : allowed)
