@@ -27,7 +27,7 @@ public:
     static constexpr std::size_t remembered = std::size_t{1} << 15;
 
     StepTally(gpio::GpioChip& inner, const gpio::Clock& clock)
-        : inner_(inner), clock_(clock), seen_(remembered) {}
+        : inner_(inner), clock_(clock), begin_ns_(clock.now_ns()), seen_(remembered) {}
 
     std::size_t line_count() const override { return inner_.line_count(); }
     Status write(gpio::LineMask changed, gpio::LineMask levels) override;
@@ -37,16 +37,17 @@ public:
     std::optional<motion::StepCounts> counts_at(std::int64_t time_ns) const;
 
 private:
-    struct Seen {
-        std::int64_t time_ns = 0;
-        motion::StepCounts before{};  // of this write
-    };
+    static constexpr int edge_bits = 8;
+    static_assert((run::all_step_bits | run::all_direction_bits) >> edge_bits == 0);
 
     gpio::GpioChip& inner_;
     const gpio::Clock& clock_;
+    std::int64_t begin_ns_;
     gpio::LineMask levels_ = 0;
     motion::StepCounts counts_{};
-    std::vector<Seen> seen_;  // a ring
+    // A ring. Of each write with steps its time since the begin, good for 833 days, and in the lowest bits the steps that
+    // it made and the directions that they had.
+    std::vector<std::uint64_t> seen_;
     std::size_t writes_ = 0;
 };
 
