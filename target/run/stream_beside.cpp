@@ -3,6 +3,12 @@
 #include "target/run/stream_beside.h"
 
 namespace lyr::run {
+namespace {
+
+// Of a portion: two edges a step and some of direction; a vector that grows would take twice as much.
+constexpr std::size_t usual_events = 5'120;
+
+}  // namespace
 
 StreamBeside::StreamBeside(EventStream stream, const std::atomic<float>& speed_factor,
                            std::int64_t longest_group_ns)
@@ -58,6 +64,7 @@ void StreamBeside::make(Group& group) {
 
 void StreamBeside::make(Portion& portion) {
     portion.events.clear();
+    portion.events.reserve(usual_events);
     portion.more = stream_.next(portion.events);
     portion.moves = stream_.steps().moves();
     portion.begun = stream_.steps().begun();
