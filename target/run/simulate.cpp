@@ -174,7 +174,8 @@ Status Simulation::pump(Executor& executor, ReplaceFile* trace) {
         const Result<bool> more = stream_.next(events);
         if (!more) return more.error();
         checks_.expect(stream_.steps().moves(), stream_.schedule().take_shifts());
-        layers_.begin(stream_.steps().begun(), stream_.schedule().shift_ns());
+        // Who lives looks there, and takes away what has been.
+        if (is_lived()) layers_.begin(stream_.steps().begun(), stream_.schedule().shift_ns());
         const Result<bool> executed =
             follow(events, executor, course_, clock_, control_.stop_requests());
         is_derailed_ = !executed.ok();
