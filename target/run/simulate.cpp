@@ -90,10 +90,6 @@ public:
             heat_.observe(
                 [this](double time_s) { job_.heat_watch(time_s, heat_.any_heater_on()); });
         if (job.resumption) life_.begin_with(*job.resumption, false);
-        if (job.resumption) {
-            stream_.begin_drawn_back(job.resumption->drawn_back_mm);
-            file_.begin_drawn_back(job.resumption->drawn_back_mm);
-        }
         stream_.heed_speed(course_.plan_factor);
         if (is_lived()) clock_.on_tick = [this](double time_s) { live(time_s); };
     }
@@ -295,8 +291,12 @@ Result<SimulationReport> simulate(const SimulationJob& asked) {
     if (!stream) return stream.error();
     Result<format::Reader> reader = open_file(job.file, first_layer);
     if (!reader) return reader.error();
-    Simulation simulation(job, *inspection, std::move(*stream),
-                          FilePath(std::move(*reader), job.printer.start_mm, diameter_mm), wanted,
+    FilePath file(std::move(*reader), job.printer.start_mm, diameter_mm);
+    if (job.resumption) {
+        stream->begin_drawn_back(job.resumption->drawn_back_mm);
+        file.begin_drawn_back(job.resumption->drawn_back_mm);
+    }
+    Simulation simulation(job, *inspection, std::move(*stream), std::move(file), wanted,
                           heeded->heats);
     if (const Status run = simulation.run(trace ? &*trace : nullptr); !run) return run.error();
     if (trace)
