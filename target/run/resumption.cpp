@@ -23,23 +23,28 @@ double z_over_start_mm(const config::Printer& printer, const motion::Point& head
     return head.z + bed->lift_mm(head) - bed->lift_mm(start);
 }
 
+void note_replaced(Diagnostic why, Diagnostics& notes) {
+    why.severity = Severity::warning;
+    why.message += "; it is replaced";
+    notes.push_back(std::move(why));
+}
+
 // What becomes of a journal that is there. Errors: it is another printer's.
-Status see_to(const std::string& path, const config::Printer& printer, Diagnostics& notes) {
+Status see_to(const std::string& path, const config::Printer& printer, const FileIdentity& file,
+              Diagnostics& notes) {
     const Result<std::optional<JournalEntry>> before = read_journal(path);
-    if (!before) {
-        notes.push_back(before.error());
-        notes.back().severity = Severity::warning;
-        notes.back().message += "; it is replaced";
-        return Done{};
-    }
-    if (!*before) return Done{};
+    if (!before) note_replaced(before.error(), notes);
+    if (!before || !*before) return Done{};
     const std::string different = difference((*before)->printer, identity_of(printer));
-    if (different.empty()) return Done{};
-    return Diagnostic{Severity::error,
-                      ExitStatus::output,
-                      "the journal is of a print on another printer (other " + different +
-                          ") and stays: give each printer a recovery.folder of its own",
-                      {.file = path}};
+    if (!different.empty())
+        return Diagnostic{Severity::error,
+                          ExitStatus::output,
+                          "the journal is of a print on another printer (other " + different +
+                              ") and stays: give each printer a recovery.folder of its own",
+                          {.file = path}};
+    if (!((*before)->file == file))
+        note_replaced(refused("the journal is of another file of this name", path), notes);
+    return Done{};
 }
 
 Status try_journal(const config::Printer& printer, const std::string& file, const std::string& path,
@@ -48,7 +53,7 @@ Status try_journal(const config::Printer& printer, const std::string& file, cons
     if (!identity) return identity.error();
     Result<Journal> journal = Journal::open(path);
     if (!journal) return journal.error();
-    if (Status ours = see_to(path, printer, notes); !ours) return ours;
+    if (Status ours = see_to(path, printer, *identity, notes); !ours) return ours;
     opened.file = *identity;
     opened.journal.emplace(std::move(*journal));
     return Done{};

@@ -94,10 +94,7 @@ public:
         if (job.heat_watch)
             heat_.observe(
                 [this](double time_s) { job_.heat_watch(time_s, heat_.any_heater_on()); });
-        if (job.resumption) {
-            life_.begin_with(*job.resumption, false);
-            file_.begin_drawn_back(job.resumption->drawn_back_mm);
-        }
+        if (job.resumption) life_.begin_with(*job.resumption, false);
         if (is_lived()) clock_.on_tick = [this](double time_s) { live(time_s); };
     }
 
@@ -180,7 +177,8 @@ Status Simulation::pump(Executor& executor, ReplaceFile* trace) {
         layer_ = portion.layer;
         shift_ns_ = portion.shift_ns;
         checks_.expect(portion.moves, portion.shifts);
-        layers_.begin(portion.begun, portion.shift_ns);
+        // Who lives looks there, and takes away what has been.
+        if (is_lived()) layers_.begin(portion.begun, portion.shift_ns);
         const Result<bool> executed = follow(portion, executor);
         is_derailed_ = !executed.ok();
         if (!executed) return executed.error();
@@ -310,11 +308,14 @@ Result<SimulationReport> simulate(const SimulationJob& asked) {
     Result<EventStream> stream =
         EventStream::open(job.file, job.printer, diameter_mm, wanted, first_layer);
     if (!stream) return stream.error();
-    if (job.resumption) stream->begin_drawn_back(job.resumption->drawn_back_mm);
     Result<format::Reader> reader = open_file(job.file, first_layer);
     if (!reader) return reader.error();
-    Simulation simulation(job, *inspection, std::move(*stream),
-                          FilePath(std::move(*reader), job.printer.start_mm, diameter_mm), wanted,
+    FilePath file(std::move(*reader), job.printer.start_mm, diameter_mm);
+    if (job.resumption) {
+        stream->begin_drawn_back(job.resumption->drawn_back_mm);
+        file.begin_drawn_back(job.resumption->drawn_back_mm);
+    }
+    Simulation simulation(job, *inspection, std::move(*stream), std::move(file), wanted,
                           heeded->heats);
     if (const Status run = simulation.run(trace ? &*trace : nullptr); !run) return run.error();
     if (trace)

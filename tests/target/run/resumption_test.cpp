@@ -308,21 +308,31 @@ TEST_CASE("print 7: a print of the same file took another printer's journal away
     CHECK_FALSE(std::filesystem::exists(file + ".journal"));
 }
 
-TEST_CASE(
-    "print 7: a journal that is damaged or of another version is replaced, and that is told") {
+TEST_CASE("print 7: a journal that nobody can go on from is replaced, and that is told") {
+    const config::Printer printer = nearby_printer();
     const std::string file = write_print("replaced", {draw_small});
-    for (const std::string& bytes : {std::string("LYRJRNL1"), std::string(500, 'x')}) {
-        std::ofstream(file + ".journal") << bytes;
+    const auto told = [&] {
         gpio::MonotonicClock clock;
         gpio::MockChip chip(line_count, clock, {});
-        PrintJob job{file, nearby_printer(), false, {}};
+        PrintJob job{file, printer, false, {}};
         job.journal = file + ".journal";
         const Result<PrintReport> report = print(job, chip, clock);
         REQUIRE(report.ok());
-        REQUIRE_FALSE(report->warnings.empty());
-        CHECK(report->warnings[0].message.find("it is replaced") != std::string::npos);
         CHECK_FALSE(std::filesystem::exists(job.journal));
-    }
+        return report->warnings.empty() ? std::string() : report->warnings[0].message;
+    };
+    std::ofstream(file + ".journal") << "LYRJRNL1";
+    CHECK(told().find("another version of lyrrun; it is replaced") != std::string::npos);
+    std::ofstream(file + ".journal") << std::string(500, 'x');
+    CHECK(told().find("no entry is whole; it is replaced") != std::string::npos);
+    write_entry(printer, file, 1);
+    CHECK(told().find("it is replaced") == std::string::npos);
+    write_entry(printer, file, 1);
+    write_print("replaced", {[](const Pen& pen) {
+                    pen.path();
+                    pen.line(1, 0);
+                }});
+    CHECK(told().find("of another file of this name; it is replaced") != std::string::npos);
 }
 
 TEST_CASE("print 6: pauses, in a real print's threads, leave the path as it is") {
