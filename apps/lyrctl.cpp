@@ -12,6 +12,7 @@
 #include "base/text.h"
 #include "target/control/link.h"
 #include "target/control/places.h"
+#include "target/control/request.h"
 
 namespace {
 
@@ -49,7 +50,7 @@ constexpr Program program{
     "Where one printer is at work, it is found by itself. docs/control-protocol.md has the\n"
     "protocol for programs of your own.\n"
     "Exit status: 0 done, 2 options, 6 output, 7 no printer is at work, it cannot do this now, or\n"
-    "(--watch) the print failed, 8 stopped on request.\n"};
+    "(--watch) the print failed, 8 stopped on request, as it was, or (--watch) the print was.\n"};
 
 void add_options(Options& app, Arguments& arguments) {
     add_texts(
@@ -93,12 +94,15 @@ Result<std::string> setting(const std::string& word) {
         const char* name;
         const char* member;
         bool is_share;
+        double low, high;  // as they are given
     };
-    constexpr Setting settings[] = {{"tool", "tool_c", false},
-                                    {"bed", "bed_c", false},
-                                    {"chamber", "chamber_c", false},
-                                    {"fan", "fan", true},
-                                    {"speed", "speed", true}};
+    constexpr double percent = 0.01, hottest_c = control::highest_target_c;
+    constexpr Setting settings[] = {{"tool", "tool_c", false, 0, hottest_c},
+                                    {"bed", "bed_c", false, 0, hottest_c},
+                                    {"chamber", "chamber_c", false, 0, hottest_c},
+                                    {"fan", "fan", true, 0, 100},
+                                    {"speed", "speed", true, run::least_speed_factor / percent,
+                                     run::most_speed_factor / percent}};
     const std::size_t equals = std::min(word.find('='), word.size());
     for (const Setting& each : settings) {
         if (word.substr(0, equals) != each.name) continue;
@@ -107,11 +111,11 @@ Result<std::string> setting(const std::string& word) {
         const bool has_unit = value.ends_with('%');
         if (has_unit) value.pop_back();
         const auto number = finite_number(value);
-        if (!number || has_unit != each.is_share)
+        if (!number || has_unit != each.is_share || *number < each.low || *number > each.high)
             return usage("set " + std::string(each.name) + ": expected " +
-                         (each.is_share ? "a number and %" : "°C, a number") + ", found " +
-                         in_quotes(word));
-        constexpr double percent = 0.01;
+                         (each.is_share ? "a number" : "°C,") +
+                         formatted(" from %g to %g", each.low, each.high) +
+                         (each.is_share ? " and %" : "") + ", found " + in_quotes(word));
         return '"' + std::string(each.member) +
                "\":" + shortest(each.is_share ? *number * percent : *number);
     }
@@ -158,10 +162,6 @@ Result<std::string> find_socket(const Arguments& arguments) {
     return usage("several printers are at work; choose one with --socket: " + places);
 }
 
-bool is_over(const run::PrintStatus& status) {
-    return status.state == run::PrintState::done || status.state == run::PrintState::failed;
-}
-
 Status show(const control::Told& told, const Arguments& arguments) {
     if (arguments.json) return tell(told.json + '\n');
     return tell(text_of(told));
@@ -179,8 +179,13 @@ Status watch(control::Link& link, const Arguments& arguments) {
         const auto* told = std::get_if<control::Told>(&*answer);
         if (!told) continue;
         if (Status shown = show(*told, arguments); !shown) return shown;
-        if (!is_over(told->status)) continue;
+        if (!run::is_over(told->status.state)) continue;
         if (told->status.state == run::PrintState::done) return Done{};
+        if (told->status.state == run::PrintState::stopped)
+            return Diagnostic{Severity::error,
+                              ExitStatus::stopped,
+                              "the print was stopped: " + told->status.message,
+                              {}};
         return not_done("the print failed: " + told->status.message);
     }
 }

@@ -56,6 +56,7 @@ constexpr Program program{
     "  lyrrun --printer printer.toml --measure-latency    how fast it may step\n"
     "  lyrrun --printer printer.toml --home               find where the head is\n"
     "  lyrrun --printer printer.toml --jog x=10,z=5       and move it by so much\n"
+    "  lyrrun --printer printer.toml --jog e=20 --tool 210  push filament\n"
     "  lyrrun --printer printer.toml --calibrate mesh     measure how high the bed is where\n"
     "  lyrrun --printer printer.toml --tune tool=210      find a heater's kp, ki and kd\n"
     "  lyrrun part.lyr --printer printer.toml             print\n"
@@ -314,6 +315,11 @@ Status check_board_together(const Arguments& arguments) {
 // What makes no sense together.
 Status check_together(const Arguments& arguments) {
     if (arguments.board.given()) return check_board_together(arguments);
+    if (arguments.place.tool_c && !arguments.place.feed_mm)
+        return usage("--tool goes with --jog e=MM");
+    if (arguments.place.feed_mm &&
+        (arguments.place.home || arguments.place.jog_mm || arguments.place.calibrate))
+        return usage("--jog e=MM goes alone, with --tool");
     if (arguments.tune && arguments.place.given())
         return usage("--tune goes without --home, --jog and --calibrate");
     if (arguments.place.calibrate && (arguments.place.home || arguments.place.jog_mm))

@@ -6,6 +6,7 @@
 #include "apps/progress_line.h"
 #include "base/replace_file.h"
 #include "base/text.h"
+#include "target/home/filament.h"
 
 namespace lyr::command_line {
 namespace {
@@ -77,6 +78,15 @@ Status calibrate(const Program& program, std::vector<home::Calibration> wanted, 
     return tell(text + "  kept in " + file + '\n');
 }
 
+Status feed(const Program& program, const PlaceArguments& arguments, const home::Job& job) {
+    const Result<home::Fed> fed = home::feed(job, *arguments.feed_mm, arguments.tool_c);
+    if (!fed) return fed.error();
+    show(program, fed->warnings);
+    return tell('"' + job.printer.name + '"' + (job.simulate ? ", simulated\n" : "\n") +
+                formatted("  filament: %g mm at %g mm/s, %lld steps; the tool is off\n",
+                          *arguments.feed_mm, fed->speed_mm_s, static_cast<long long>(fed->steps)));
+}
+
 }  // namespace
 
 void add_place_options(Options& app, PlaceArguments& arguments) {
@@ -92,12 +102,26 @@ void add_place_options(Options& app, PlaceArguments& arguments) {
     add_text(
         app, "--jog", "x=MM,y=MM,z=MM",
         [&arguments](const std::string& value) -> std::optional<std::string> {
-            arguments.jog_mm = way_of(value);
-            if (!arguments.jog_mm) return "axes with ways, such as x=10,z=-1";
+            if (value.starts_with("e="))
+                arguments.feed_mm = finite_number(value.substr(2));
+            else
+                arguments.jog_mm = way_of(value);
+            if (!arguments.jog_mm && !arguments.feed_mm)
+                return "axes with ways, such as x=10,z=-1, or e=20 alone";
             return std::nullopt;
         },
         "Move the head by so much from the start of a print, in place of one; homes first where "
-        "the printer can, else the head is in the middle of its ranges");
+        "the printer can, else the head is in the middle of its ranges. e=MM alone: push filament, "
+        "or "
+        "draw it out, with --tool");
+    add_text(
+        app, "--tool", "C",
+        [&arguments](const std::string& value) -> std::optional<std::string> {
+            arguments.tool_c = finite_number(value);
+            if (!arguments.tool_c || *arguments.tool_c <= 0) return "a temperature in °C";
+            return std::nullopt;
+        },
+        "With --jog e=MM: heat the tool to this before, and let it cool down afterwards");
     add_text(
         app, "--calibrate", "[WHAT]",
         [&arguments](const std::string& value) -> std::optional<std::string> {
@@ -118,6 +142,7 @@ void add_place_options(Options& app, PlaceArguments& arguments) {
 }
 
 Status work_place(const Program& program, const PlaceArguments& arguments, const home::Job& job) {
+    if (arguments.feed_mm) return feed(program, arguments, job);
     if (arguments.calibrate) return calibrate(program, *arguments.calibrate, job);
     home::AxisSet axes = arguments.home.value_or(home::AxisSet());
     if (axes.none()) axes = home::homable(job.printer);

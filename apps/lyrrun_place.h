@@ -12,9 +12,10 @@ namespace lyr::command_line {
 struct PlaceArguments {
     std::optional<home::AxisSet> home;  // empty: all that can be
     std::optional<motion::Point> jog_mm;
+    std::optional<double> feed_mm, tool_c;  // of filament, with the tool this warm
     std::optional<std::vector<home::Calibration>> calibrate;  // empty: all that the printer needs
 
-    bool given() const { return home || jog_mm || calibrate; }
+    bool given() const { return home || jog_mm || feed_mm || tool_c || calibrate; }
 };
 
 void add_place_options(Options& app, PlaceArguments& arguments);

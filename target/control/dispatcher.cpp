@@ -18,9 +18,8 @@ struct Overloaded : Calls... {
     using Calls::operator()...;
 };
 
-bool is_over(PrintState state) {
-    return state == PrintState::stopping || state == PrintState::done ||
-           state == PrintState::failed;
+bool is_ending(PrintState state) {
+    return state == PrintState::stopping || run::is_over(state);
 }
 
 bool is_at_rest(PrintState state) {
@@ -102,20 +101,20 @@ std::optional<Refusal> Dispatcher::objection(const run::Command& command, PrintS
         // Of two people who see fire, the second must not be told off.
         [](const run::EmergencyStop&) { return Objection(); },
         [&](const run::Pause&) {
-            return is_over(state) || is_at_rest(state) ? wrong_state("cannot pause", state)
-                                                       : Objection();
+            return is_ending(state) || is_at_rest(state) ? wrong_state("cannot pause", state)
+                                                         : Objection();
         },
         [&](const run::Resume&) {
             return is_at_rest(state) ? Objection() : wrong_state("cannot resume", state);
         },
         [&](const run::ChangeFilament&) {
-            return is_over(state) ? wrong_state("cannot change filament", state) : Objection();
+            return is_ending(state) ? wrong_state("cannot change filament", state) : Objection();
         },
         [&](const run::Cancel&) {
-            return is_over(state) ? wrong_state("cannot cancel", state) : Objection();
+            return is_ending(state) ? wrong_state("cannot cancel", state) : Objection();
         },
         [&](const run::SetTemperature& set) -> Objection {
-            if (is_over(state)) return wrong_state("cannot set temperatures", state);
+            if (is_ending(state)) return wrong_state("cannot set temperatures", state);
             const auto& heater = printer_.heaters[set.heater];
             if (!heater || !print_.status().heaters[set.heater].is_present)
                 return Refusal{
@@ -129,7 +128,7 @@ std::optional<Refusal> Dispatcher::objection(const run::Command& command, PrintS
             return std::nullopt;
         },
         [&](const auto&) {
-            return is_over(state) ? wrong_state("cannot set this", state) : Objection();
+            return is_ending(state) ? wrong_state("cannot set this", state) : Objection();
         }};
     return std::visit(check, command);
 }

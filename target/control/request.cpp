@@ -109,9 +109,6 @@ struct Quantity {
     run::Command (*make)(double);
 };
 
-// No heater of any printer goes further; what this one can do is asked where it is known.
-constexpr double highest_target_c = 1'000;
-
 template <std::size_t Heater>
 run::Command target(double target_c) {
     return run::SetTemperature{Heater, target_c};

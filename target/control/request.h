@@ -32,6 +32,9 @@ enum class ErrorCode : std::uint8_t {
 };
 std::string_view name_of(ErrorCode code);
 
+// No heater of any printer goes further; what this one can do is asked where it is known.
+inline constexpr double highest_target_c = 1'000;
+
 struct GetStatus {};
 struct Subscribe {
     double interval_s = 0;  // 0: no more

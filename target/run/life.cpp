@@ -494,7 +494,11 @@ void Life::end(const Status& result, bool is_position_known) {
     phase_ = Phase::over;
     hear_of_journal();
     if (!result) message_ = result.error().message;
-    publish(result ? PrintState::done : PrintState::failed, is_position_known);
+    const bool is_stopped = !result && result.error().status == ExitStatus::stopped;
+    publish(result       ? PrintState::done
+            : is_stopped ? PrintState::stopped
+                         : PrintState::failed,
+            is_position_known);
 }
 
 }  // namespace lyr::run

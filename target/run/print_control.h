@@ -33,11 +33,17 @@ enum class PrintState : std::uint8_t {
     paused,
     resuming,  // heats, primes and goes back
     stopping,  // on request or after a fault
-    done,
-    failed,  // or stopped; the message says which
+    done,      // from here on it is over
+    failed,
+    stopped,  // for good, on request
 };
-inline constexpr std::array<std::string_view, 8> print_state_names{
-    "heating", "printing", "pausing", "paused", "resuming", "stopping", "done", "failed"};
+inline constexpr std::array<std::string_view, 9> print_state_names{
+    "heating",  "printing", "pausing", "paused", "resuming",
+    "stopping", "done",     "failed",  "stopped"};
+
+constexpr bool is_over(PrintState state) {
+    return state >= PrintState::done;
+}
 
 struct PrintStatus {
     PrintState state = PrintState::heating;

@@ -3,14 +3,10 @@
 #include "target/run/tune.h"
 
 #include <cstdio>
-#include <thread>
 
 #include "base/text.h"
-#include "target/gpio/clock.h"
-#include "target/run/buttons.h"
 #include "target/run/demands.h"
-#include "target/run/heating.h"
-#include "target/run/stop_signals.h"
+#include "target/run/tended_heat.h"
 #include "target/thermal/simulated_heat.h"
 
 namespace lyr::run {
@@ -20,10 +16,9 @@ namespace {
 constexpr double longest_swing_s = 30 * 60;
 // A room may be as warm, and without power no heater gets colder than that.
 constexpr double coldest_target_c = 30;
-constexpr int tick_ms = 100;
 
-Diagnostic failed(std::string message, ExitStatus status = ExitStatus::machine) {
-    return {Severity::error, status, std::move(message), {}};
+Diagnostic failed(std::string message) {
+    return {Severity::error, ExitStatus::machine, std::move(message), {}};
 }
 
 Status check(const TuneJob& job) {
@@ -92,32 +87,15 @@ Result<thermal::TuneResult> simulated(const TuneJob& job) {
 }
 
 Result<thermal::TuneResult> real(const TuneJob& job) {
-    const StopSignals signals;
-    Result<Heating> heating = open_heating(job.printer);
-    if (!heating) return heating.error();
-    Result<std::optional<Buttons>> buttons = open_buttons(job.printer);
-    if (!buttons) return buttons.error();
-    begin(job, *heating->control);
-    // Takes the heat away when this thread hangs at a sensor.
-    const std::jthread watch([&](const std::stop_token& over) {
-        while (!over.stop_requested()) {
-            (void)heating->stage->expire(heat_time_s());
-            std::this_thread::sleep_for(std::chrono::milliseconds(tick_ms));
-        }
-    });
+    const auto heat = TendedHeat::open(job.printer);
+    if (!heat) return heat.error();
+    begin(job, (*heat)->control());
     const double from_s = heat_time_s();
     Swings swings;
     for (;;) {
-        heating->control->tick(heat_time_s());
-        const bool is_off = heating->stage->latched() && !heating->control->trip();
-        if (is_off) return failed("reading the sensors took more than 3 s; all heaters are off");
-        if (auto over = outcome(job, *heating->control, heat_time_s() - from_s, swings))
+        if (std::optional<Diagnostic> why = (*heat)->tick()) return std::move(*why);
+        if (auto over = outcome(job, (*heat)->control(), heat_time_s() - from_s, swings))
             return std::move(*over);
-        if (*buttons && asks_for_emergency(**buttons, gpio::MonotonicClock().now_ns()))
-            return failed("the emergency line stopped it; all heaters are off",
-                          ExitStatus::stopped);
-        if (signals.wait_ms(tick_ms))
-            return failed("stopped on request; all heaters are off", ExitStatus::stopped);
     }
 }
 

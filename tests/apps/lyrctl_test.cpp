@@ -110,12 +110,16 @@ TEST_CASE("lyrctl: what is wrong comes as one line and with its status") {
     for (const char* bad :
          {"tool", "tool=", "tool=hot", "tool=50%", "fan=1", "fan=%", "speed=nan%"})
         check_failure(scene.lyrctl(std::string("set ") + bad), 2, "expected");
+    // What no printer does was sent, and came back as an error of the machine.
+    for (const char* bad : {"speed=1000%", "speed=9%", "speed=-50%"})
+        check_failure(scene.lyrctl(std::string("set ") + bad), 2, "from 10 to 300 and %");
+    check_failure(scene.lyrctl("set fan=101%"), 2, "from 0 to 100 and %");
+    check_failure(scene.lyrctl("set bed=1001"), 2, "°C, from 0 to 1000");
     for (const char* port : {"", "http", "-1", "65536", "80.5", "80 81"})
         check_failure(scene.lyrctl(std::string("web ") + port), 2, "web: expected a port");
     check_failure(scene.lyrctl("pause --token token"), 2, "--token goes with web");
     check_failure(scene.lyrctl("resume"), 7, "cannot resume: the print is printing");
     check_failure(scene.lyrctl("set tool=400"), 7, "goes up to 270");
-    check_failure(scene.lyrctl("set speed=900%"), 7, "speed must be a number from 0.1 to 3");
     check_failure(scene.lyrctl("status --socket nowhere.sock"), 7, "no printer is at work");
     check_failure(scene.lyrctl("status >/dev/full"), 6, "");
     CHECK_FALSE(scene.print.take());
@@ -151,6 +155,13 @@ TEST_CASE("lyrctl: --watch goes on until the print is over and ends as it did") 
     const Ended told = scene.lyrctl("status --watch");
     CHECK(told.status == 7);
     CHECK(told.err == "lyrctl: error: the print failed: a guard fired\n");
+    // It was said to have failed.
+    run::PrintStatus stopped = some_status(run::PrintState::stopped);
+    stopped.message = "cancelled";
+    scene.print.publish(stopped);
+    const Ended ended = scene.lyrctl("status --watch");
+    CHECK(ended.status == 8);
+    CHECK(ended.err == "lyrctl: error: the print was stopped: cancelled\n");
     scene.print.publish(some_status(run::PrintState::paused));
     const Running watching(scene.folder, {"lyrctl", "status", "--watch", "--socket", "lyr/a.sock"},
                            scene.folder / "err");

@@ -61,6 +61,33 @@ TEST_CASE("lyrrun --jog: from the start of a print, within the ranges") {
     CHECK(free.out.find("y -3.000") != std::string::npos);
 }
 
+TEST_CASE("lyrrun --jog e: pushes filament with a warm tool, or draws it out") {
+    const Folder folder = with_printer();
+    folder.write("hot.toml",
+                 text_of(folder / "p.toml") + "[heater.tool.sensor]\nkind = \"ntc_100k_3950\"\n");
+    const std::string jog = "lyrrun --simulate --printer hot.toml --jog ";
+    const Ended pushed = folder.run(jog + "e=20 --tool 210");
+    CHECK(pushed.status == 0);
+    CHECK(pushed.err.empty());
+    CHECK(pushed.out.find("filament: 20 mm at 2 mm/s, 8300 steps") != std::string::npos);
+    const Ended drawn = folder.run(jog + "e=-10 --tool 210");
+    CHECK(drawn.out.find("-10 mm at 2 mm/s, -4150 steps") != std::string::npos);
+    for (const char* cold : {"e=20", "e=20 --tool 100", "e=20 --tool 400"})
+        check_failure(folder.run(jog + cold), "lyrrun", 7, "with the tool at 170 to ");
+    check_failure(folder.run("lyrrun --simulate --printer p.toml --jog e=20 --tool 210"), "lyrrun",
+                  7, "has no heater.tool");
+    CHECK(folder.run("lyrrun --simulate --printer p.toml --jog e=20").status == 0);
+    check_failure(folder.run(jog + "e=20,x=1 --tool 210"), "lyrrun", 2, "e=20 alone");
+    check_failure(folder.run(jog + "x=1 --tool 210"), "lyrrun", 2, "--tool goes with --jog e=MM");
+    check_failure(folder.run(jog + "e=20 --tool 210 --home"), "lyrrun", 2, "goes alone");
+    // A guard takes the heat away, while it heats and while filament is pushed.
+    for (const char* fault : {"5 open tool\n", "80 open tool\n"}) {
+        folder.write("f.txt", fault);
+        check_failure(folder.run(jog + "e=200 --tool 210 --faults f.txt"), "lyrrun", 7,
+                      "heater tool");
+    }
+}
+
 TEST_CASE("lyrrun --home: faults come with their message and status 7") {
     const Folder folder = with_printer();
     const auto broken = [&](const char* faults) {

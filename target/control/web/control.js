@@ -8,7 +8,7 @@ lyr.control = (() => {
     const element = lyr.panel.element;
 
     // Which state allows what; lyrrun says the last word.
-    const over = ["stopping", "done", "failed"], rests = ["pausing", "paused"];
+    const over = ["stopping", "done", "failed", "stopped"], rests = ["pausing", "paused"];
     const allowed = {
         pause: (state) => !over.includes(state) && !rests.includes(state),
         resume: (state) => rests.includes(state),
@@ -136,7 +136,7 @@ lyr.control = (() => {
         }
 
         isOver() {
-            return this.status !== null && ["done", "failed"].includes(this.status.state);
+            return this.status !== null && ["done", "failed", "stopped"].includes(this.status.state);
         }
 
         show() {

@@ -43,6 +43,14 @@ std::string_view header(MHD_Connection* connection, const char* name) {
     return value ? value : "";
 }
 
+// Of an Accept-Encoding. Who sends none may take anything, but is a program that most likely unpacks nothing.
+bool takes_gzip(std::string_view accepted) {
+    const std::size_t at = accepted.find("gzip");
+    if (at == std::string_view::npos) return false;
+    const std::string_view after = accepted.substr(at);
+    return !after.starts_with("gzip;q=0") || after.starts_with("gzip;q=0.");
+}
+
 struct Release {
     void operator()(MHD_Response* response) const { MHD_destroy_response(response); }
 };
@@ -233,6 +241,9 @@ MHD_Result WebPage::Work::post(MHD_Connection* connection, const Body& body) {
 }
 
 MHD_Result WebPage::Work::send_page(MHD_Connection* connection) const {
+    if (!takes_gzip(header(connection, MHD_HTTP_HEADER_ACCEPT_ENCODING)))
+        return refuse(connection, MHD_HTTP_NOT_ACCEPTABLE, ErrorCode::bad_request,
+                      "the page comes packed: send Accept-Encoding: gzip (curl --compressed)");
     Response response = response_of(page_bytes());
     if (response) MHD_add_response_header(response.get(), MHD_HTTP_HEADER_CONTENT_ENCODING, "gzip");
     return send(connection, MHD_HTTP_OK, std::move(response), "text/html; charset=utf-8");

@@ -96,9 +96,9 @@ TEST_CASE("dispatcher 2: what cannot be done is refused and nothing of it is don
 
 TEST_CASE("dispatcher 2: which command in which state") {
     const std::vector<std::pair<const char*, const char*>> allowed{
-        // heating, printing, pausing, paused, resuming, stopping, done, failed
-        {"pause", "yynnynnn"}, {"resume", "nnyynnnn"},          {"cancel", "yyyyynnn"},
-        {"stop", "yyyyyyyy"},  {"change_filament", "yyyyynnn"}, {"status", "yyyyyyyy"},
+        // heating, printing, pausing, paused, resuming, stopping, done, failed, stopped
+        {"pause", "yynnynnnn"}, {"resume", "nnyynnnnn"},          {"cancel", "yyyyynnnn"},
+        {"stop", "yyyyyyyyy"},  {"change_filament", "yyyyynnnn"}, {"status", "yyyyyyyyy"},
     };
     for (const auto& [command, states] : allowed)
         for (std::size_t i = 0; i < run::print_state_names.size(); ++i) {

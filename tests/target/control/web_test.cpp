@@ -139,6 +139,8 @@ struct Scene {
         REQUIRE(browser.connected);
         browser.send(
             first + " HTTP/1.1\r\nHost: " + (as_host.empty() ? host() : as_host) + "\r\n" +
+            (headers.find("Accept-Encoding") == std::string::npos ? "Accept-Encoding: gzip, br\r\n"
+                                                                  : "") +
             headers +
             (body.empty() ? "" : "Content-Length: " + std::to_string(body.size()) + "\r\n") +
             "\r\n" + body);
@@ -153,6 +155,21 @@ struct Scene {
 const std::string with_token = std::string("Authorization: Bearer ") + token + "\r\n";
 
 }  // namespace
+
+TEST_CASE("web page: who did not ask for gzip was sent it") {
+    const Scene scene;
+    for (const char* accepted : {"", "br", "identity", "gzip;q=0", "gzip;q=0, br"}) {
+        CAPTURE(accepted);
+        const Answered plain =
+            scene.ask("GET /", std::string("Accept-Encoding: ") + accepted + "\r\n");
+        CHECK(plain.status == 406);
+        CHECK(plain.headers.find("Content-Encoding") == std::string::npos);
+        CHECK(plain.body.find("curl --compressed") != std::string::npos);
+    }
+    for (const char* accepted : {"gzip", "br, gzip;q=0.5", "deflate, gzip;q=1.0, *;q=0.5"})
+        CHECK(scene.ask("GET /", std::string("Accept-Encoding: ") + accepted + "\r\n").status ==
+              200);
+}
 
 TEST_CASE("web page: gives the page, the status and the print") {
     const Scene scene;

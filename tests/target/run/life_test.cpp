@@ -221,7 +221,7 @@ TEST_CASE("life 4: a cancel parks the head and ends; so it does in a pause and o
         CHECK(report.error().status == ExitStatus::stopped);
         CHECK(report.error().message.find("cancelled") != std::string::npos);
         const PrintStatus end = control.status();
-        CHECK(end.state == PrintState::failed);
+        CHECK(end.state == PrintState::stopped);
         CHECK(end.is_position_known);
         CHECK(end.position_mm[0] == doctest::Approx(5).epsilon(0.01));
         CHECK(end.position_mm[1] == doctest::Approx(120).epsilon(0.01));

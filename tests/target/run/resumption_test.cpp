@@ -238,7 +238,7 @@ TEST_CASE(
         if (now.layer >= 2 && !sent) std::raise(SIGTERM), sent = true;
     });
     REQUIRE_FALSE(stopped.ok());
-    CHECK(killed.status().state == PrintState::failed);
+    CHECK(killed.status().state == PrintState::stopped);
     CHECK(killed.status().is_position_known);
     const Result<Resumption> found = find_resumption(printer, file);
     REQUIRE(found.ok());

@@ -128,7 +128,8 @@ void check_safe(const End& end, double fault_s, ExitStatus status, const std::st
     CHECK(end.last_on_s <= fault_s + 1);
     CHECK(end.message.find(part) != std::string::npos);
     CHECK(end.message.find('\n') == std::string::npos);
-    CHECK(end.print.state == PrintState::failed);
+    CHECK(end.print.state ==
+          (status == ExitStatus::stopped ? PrintState::stopped : PrintState::failed));
     CHECK(end.print.message.find(part) != std::string::npos);
 }
 
