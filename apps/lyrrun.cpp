@@ -300,6 +300,13 @@ bool asks_of_a_print(const Arguments& arguments) {
 
 Status check_board_together(const Arguments& arguments) {
     const BoardArguments& board = arguments.board;
+    if (board.off) {
+        if (board.check || board.measure || board.lines || asks_of_a_print(arguments) ||
+            arguments.tune || arguments.place.given() || arguments.simulate || arguments.json ||
+            !arguments.faults_path.empty())
+            return usage("--off goes with --printer alone");
+        return Done{};
+    }
     if (board.check == board.measure)
         return usage(board.check ? "--check goes without --measure-latency"
                                  : "--lines goes with --measure-latency");

@@ -4,6 +4,8 @@
 #include "apps/signal_watch.h"
 #include "target/board/check.h"
 #include "target/board/latency.h"
+#include "target/gpio/gpiod_chip.h"
+#include "target/run/heating.h"
 
 namespace lyr::command_line {
 namespace {
@@ -36,6 +38,10 @@ void add_board_options(Options& app, BoardArguments& arguments) {
              "asks for, in place of a print; nothing moves");
     add_flag(app, "--measure-latency", arguments.measure,
              "Measure how late this board wakes the thread that steps, in place of a print");
+    add_flag(
+        app, "--off", arguments.off,
+        "Switch heaters and motors off, as a print that was killed may have left them; one that "
+        "is at work is left alone");
     add_flag(app, "--lines", arguments.lines,
              "With --measure-latency: write the motors' lines too, all of them inactive");
     add_numbers(app, "--seconds", "N", std::span(&arguments.seconds, 1), {0.1, 3'600, "s"},
@@ -44,6 +50,7 @@ void add_board_options(Options& app, BoardArguments& arguments) {
 
 Status work_board(const Program& program, const BoardArguments& arguments,
                   const config::Printer& printer, bool json) {
+    if (arguments.off) return run::switch_off(printer, gpio::open_gpiod_chip);
     if (arguments.check) return check_board(printer, json);
     return measure(program, arguments, printer);
 }

@@ -9,10 +9,10 @@
 namespace lyr::command_line {
 
 struct BoardArguments {
-    bool check = false, measure = false, lines = false;
+    bool check = false, measure = false, lines = false, off = false;
     double seconds = 10;
 
-    bool given() const { return check || measure || lines; }
+    bool given() const { return check || measure || lines || off; }
 };
 
 void add_board_options(Options& app, BoardArguments& arguments);

@@ -117,6 +117,23 @@ Result<Heating> open_heating(const config::Printer& printer) {
     return heating;
 }
 
+Status switch_off(const config::Printer& printer, const OpenLines& open) {
+    Result<std::vector<gpio::LineRequest>> requests = line_requests(printer);
+    if (!requests) return requests.error();
+    for (std::size_t i = 0; i < config::heater_count; ++i)
+        if (const auto& heater = printer.heaters[i]; heater && heater->output)
+            requests->push_back(line_request(
+                "heater." + std::string(config::heater_names[i]) + ".output", *heater->output));
+    const Result<std::unique_ptr<gpio::GpioChip>> chip = open(*requests);
+    if (!chip) return chip.error();
+    for (const std::optional<config::Heater>& heater : printer.heaters) {
+        if (!heater || heater->pwm.empty()) continue;
+        if (const auto channel = thermal::KernelPwm::open(heater->pwm); !channel)
+            return channel.error();
+    }
+    return (*chip)->release();
+}
+
 double heat_time_s() {
     return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
 }

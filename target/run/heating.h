@@ -7,12 +7,15 @@
 //     on; it must be called before any thread is started.
 //  2. tend() ticks until `finished`, on its own thread, and counts the ticks; a tick that takes long makes no others hurry.
 //  3. The first guard that fires is told once, through `tripped`, from whichever thread finds it.
+//  4. switch_off() makes all lines of heaters and motors inactive and empties the heaters' PWM channels, for prints that were
+//     killed. Where a line cannot be had, as that of a print at work, nothing is touched.
 
 #pragma once
 
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <span>
 
 #include "target/config/printer.h"
 #include "target/gpio/gpio_chip.h"
@@ -29,6 +32,10 @@ struct Heating {
 };
 
 Result<Heating> open_heating(const config::Printer& printer);
+
+using OpenLines =
+    std::function<Result<std::unique_ptr<gpio::GpioChip>>(std::span<const gpio::LineRequest>)>;
+Status switch_off(const config::Printer& printer, const OpenLines& open);
 
 // On the clock that tend() and the looks of others at PowerStage::expire() share.
 double heat_time_s();

@@ -32,6 +32,13 @@ TEST_CASE("lyrrun --check: a board without the printer's lines fails, in words a
     CHECK(lines_in(json.out) == 1);
 }
 
+TEST_CASE("lyrrun --off: takes the lines, or says which one it cannot have") {
+    const Folder folder = with_printer();
+    check_failure(folder.run("sed -i s/pinctrl-bcm2835/no-such-chip/ p.toml\n"
+                             "lyrrun --off --printer p.toml"),
+                  "lyrrun", 7, "axis.x.step: cannot open GPIO chip no-such-chip");
+}
+
 TEST_CASE("lyrrun --measure-latency: what it prints is a section that the printer's file takes") {
     const Folder folder = with_printer();
     const Ended measured = folder.run(
@@ -67,7 +74,8 @@ TEST_CASE("lyrrun --check, --measure-latency: what makes no sense together is re
     for (const char* options :
          {"--check --measure-latency", "--check --lines", "--lines", "--check --simulate",
           "--measure-latency --json", "--check part.lyr", "--check --tune tool=200",
-          "--measure-latency --home", "--measure-latency --seconds 0"}) {
+          "--measure-latency --home", "--measure-latency --seconds 0", "--off --check",
+          "--off part.lyr", "--off --simulate"}) {
         CAPTURE(options);
         const Ended ended = folder.run(std::string("lyrrun --printer p.toml ") + options);
         CHECK(ended.status == 2);

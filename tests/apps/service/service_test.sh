@@ -19,6 +19,8 @@ units=$prefix/lib/systemd/system
 grep -q "^ExecStart=$prefix/bin/lyrrun %f " "$units/lyrrun@.service" || fail "the unit starts something else"
 # With another the keeper of the heaters' lines is killed where the print crashes, before it has switched them off.
 grep -q "^KillMode=process$" "$units/lyrrun@.service" || fail "the unit kills the keeper of the heaters' lines"
+# Nobody else switches heaters off where both processes of a print were killed.
+grep -q "^ExecStopPost=-$prefix/bin/lyrrun .*--off$" "$units/lyrrun@.service" || fail "the unit leaves heaters on"
 
 checked=no
 if command -v systemd-analyze >/dev/null; then

@@ -206,7 +206,7 @@ def refuses_strangers(browser, work):
 def stops(browser, work):
     browser.run("document.getElementById('stop').click();")
     check(work.process.wait(20) == 8, f"lyrrun ended with {work.process.returncode}")
-    browser.wait("document.getElementById('state').textContent === 'Failed'")
+    browser.wait("document.getElementById('state').textContent === 'Stopped'")
     check(browser.run("document.getElementById('message').textContent").startswith("Emergency stop"), "why it ended")
 
 

@@ -1,0 +1,71 @@
+// What heating.h (4) says of a board that a killed print has left as it was.
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "target/gpio/mock_chip.h"
+#include "target/run/heating.h"
+
+using namespace lyr;
+using namespace lyr::run;
+
+namespace {
+
+std::string left_on(const std::filesystem::path& folder) {
+    std::filesystem::create_directories(folder);
+    for (const char* name : {"period", "duty_cycle", "enable"})
+        std::ofstream(folder / name) << "20000\n";
+    return folder.string();
+}
+
+int duty_ns(const std::filesystem::path& folder) {
+    int found_ns = -1;
+    std::ifstream(folder / "duty_cycle") >> found_ns;
+    return found_ns;
+}
+
+config::Printer wired_printer(const std::filesystem::path& pwm) {
+    config::Printer printer = config::generic_printer();
+    for (std::uint32_t i = 0; i < config::axis_count; ++i) {
+        printer.axes[i].step = config::Pin{"gpiochip0", 2 * i, false};
+        printer.axes[i].direction = config::Pin{"gpiochip0", 2 * i + 1, false};
+    }
+    printer.heaters[config::heater_tool]->output = config::Pin{"gpiochip0", 20U, false};
+    printer.heaters[config::heater_bed]->output.reset();
+    printer.heaters[config::heater_bed]->pwm = left_on(pwm);
+    return printer;
+}
+
+}  // namespace
+
+TEST_CASE("heating 4: heaters that a killed print left on are switched off, by line and channel") {
+    const auto pwm = std::filesystem::temp_directory_path() / "lyr_switch_off";
+    const config::Printer printer = wired_printer(pwm);
+    gpio::VirtualClock clock;
+    std::vector<std::string> asked;
+    const Status off = switch_off(printer, [&](std::span<const gpio::LineRequest> requests) {
+        for (const gpio::LineRequest& request : requests) asked.push_back(request.purpose);
+        return Result<std::unique_ptr<gpio::GpioChip>>(
+            std::make_unique<gpio::MockChip>(requests.size(), clock, gpio::MockChip::Observer()));
+    });
+    CHECK(off.ok());
+    CHECK(asked.size() == 2 * config::axis_count + 1);
+    CHECK(asked.back() == "heater.tool.output");
+    CHECK(duty_ns(pwm) == 0);
+    std::filesystem::remove_all(pwm);
+}
+
+TEST_CASE("heating 4: of a print that is at work nothing is touched") {
+    const auto pwm = std::filesystem::temp_directory_path() / "lyr_switch_off_busy";
+    const config::Printer printer = wired_printer(pwm);
+    const Diagnostic busy{Severity::error, ExitStatus::machine, "held by lyrrun", {}};
+    const Status off = switch_off(printer, [&](std::span<const gpio::LineRequest>) {
+        return Result<std::unique_ptr<gpio::GpioChip>>(busy);
+    });
+    REQUIRE_FALSE(off.ok());
+    CHECK(off.error().message == "held by lyrrun");
+    CHECK(duty_ns(pwm) == 20'000);
+    std::filesystem::remove_all(pwm);
+}
