@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <string_view>
 
 #include "format/bytes.h"
@@ -28,6 +27,12 @@ std::string_view text_of(Bytes bytes) {
 
 bool is(const Piece& piece, BlockType type) {
     return piece.type == static_cast<std::uint8_t>(type);
+}
+
+// As far as there is anything.
+bool begins_as_print(Bytes head) {
+    const Bytes first = head.first(std::min(head.size(), magic.size()));
+    return std::equal(first.begin(), first.end(), magic.begin());
 }
 
 std::string hexadecimal(std::uint8_t type) {
@@ -92,8 +97,7 @@ private:
     bool read_prologue() {
         const bool known = is_print(file_.at(0, print_head_bytes));
         const Bytes head = file_.at(0, prologue_bytes);
-        const std::size_t compared = std::min(head.size(), magic.size());
-        const bool named = std::memcmp(head.data(), magic.data(), compared) == 0;
+        const bool named = begins_as_print(head);
         const auto stop = [&](const char* what) { return find(0, head.size(), what), false; };
         if (head.empty()) return stop("the file is empty");
         if (!known) return stop(no_print);
@@ -405,8 +409,7 @@ private:
 // Whatever the first bytes are, where metadata follow the prologue it is one.
 bool is_print(std::span<const std::byte> head) {
     head = head.first(std::min(head.size(), print_head_bytes));
-    if (std::memcmp(head.data(), magic.data(), std::min(head.size(), magic.size())) == 0)
-        return true;
+    if (begins_as_print(head)) return true;
     if (head.size() <= prologue_bytes) return false;
     FileView view(head);
     const std::optional<Piece> first = Scanner(view).next();

@@ -103,6 +103,7 @@ public:
     SimulationReport report() const;
 
 private:
+    Status carry_out(Executor& executor, gpio::GpioChip& chip, ReplaceFile* trace);
     Status pump(Executor& executor, ReplaceFile* trace);
     Result<bool> follow(const Portion& portion, Executor& executor);
     // Waits, rests and what the head does meanwhile are no part of the plan.
@@ -154,6 +155,14 @@ Status Simulation::run(ReplaceFile* trace) {
     Executor executor(chip, clock_, executor_timing(job_.printer), control_.stop_requests(),
                       marked_ ? &marks_ : nullptr, &course_.wanted_pace);
     executor_ = &executor;
+    Status done = carry_out(executor, chip, trace);
+    // What is written from here on is the mock's own.
+    executor_ = nullptr;
+    if (done && tracing) tracing->finish();
+    return done;
+}
+
+Status Simulation::carry_out(Executor& executor, gpio::GpioChip& chip, ReplaceFile* trace) {
     Status pumped = pump(executor, trace);
     heat_.release();
     if (job_.heat_watch)
@@ -164,10 +173,7 @@ Status Simulation::run(ReplaceFile* trace) {
     waited_s_ = static_cast<double>(executor.waited_ns()) / ns_per_s;
     if (!pumped) return pumped;
     if (Status followed = checks_.finish(decoder_.positions()); !followed) return followed;
-    Status released = chip.release();
-    if (tracing) tracing->finish();
-    executor_ = nullptr;
-    return released;
+    return chip.release();
 }
 
 Status Simulation::pump(Executor& executor, ReplaceFile* trace) {

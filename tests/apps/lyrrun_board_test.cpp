@@ -8,6 +8,13 @@ using namespace lyr::tests;
 
 namespace {
 
+// Its shadow memory counts, too.
+#ifdef __SANITIZE_ADDRESS__
+constexpr bool is_sanitized = true;
+#else
+constexpr bool is_sanitized = false;
+#endif
+
 Folder with_printer() {
     Folder folder("board");
     folder.copy("printers/cartesian.toml", "p.toml");
@@ -84,7 +91,8 @@ TEST_CASE("lyrrun --check, --measure-latency: what makes no sense together is re
     CHECK(folder.run("lyrrun --check").status == 2);
 }
 
-TEST_CASE("lyrrun: a print takes at most 8 MB of memory, however long it is") {
+TEST_CASE("lyrrun: a print takes at most 8 MB of memory, however long it is" *
+          doctest::skip(is_sanitized)) {
     const Folder folder("memory");
     const std::string file = write_print("memory", std::vector<Drawing>(400, draw_square));
     const Ended ended = folder.run(
