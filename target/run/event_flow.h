@@ -6,7 +6,8 @@
 //  2. drain() begins when the ring is full or holds all there will be. Events come out a few at a time, so that there is
 //     room again early.
 //  3. A ring that has run dry is waited for, and what comes late by that is late as any other event (executor.h, 2 and 4).
-//     Where a stop was asked for, drain() ends after a tenth of a second of that, and at once if it was twice.
+//     Where a stop was asked for, drain() ends after a tenth of a second of that, and at once if it was twice; with an
+//     error (status machine) after some seconds in any case: heat must not stay on a head that stands.
 //  4. In drain() nothing is allocated or locked.
 
 #pragma once
@@ -24,9 +25,13 @@ public:
     // four axes at 20,000 steps/s each.
     static constexpr std::size_t ring_events = std::size_t{1} << 16;
 
-    // `finished`: the real-time thread has ended.
-    EventFlow(const StopRequests& stop_requests, const std::atomic<bool>& finished)
-        : stop_requests_(stop_requests), finished_(finished) {}
+    // Of the real-time thread, which has nothing to write.
+    static constexpr int nap_us = 50;
+
+    // `finished`: the real-time thread has ended. After so many naps a dry ring is an error.
+    EventFlow(const StopRequests& stop_requests, const std::atomic<bool>& finished,
+              int most_dry_naps = 5'000'000 / nap_us)
+        : stop_requests_(stop_requests), finished_(finished), most_dry_naps_(most_dry_naps) {}
 
     void put(std::span<const LineEvent> events);
     // There are no more.
@@ -40,7 +45,9 @@ public:
         for (int naps = 0; !ring_.ended();) {
             std::span<const LineEvent> events = ring_.view();
             if (events.empty()) {
-                if (stops() && (naps++ == most_naps || stop_requests_.load() > 1)) return false;
+                ++naps;
+                if (stops() && (naps > most_naps || stop_requests_.load() > 1)) return false;
+                if (naps > most_dry_naps_) return ran_dry();
                 nap();
                 continue;
             }
@@ -55,12 +62,13 @@ public:
 
 private:
     bool stops() const { return stop_requests_.load() != 0; }
-    // Of the real-time thread, which has nothing to write.
-    static constexpr int nap_us = 50, most_naps = 100'000 / nap_us;
+    static constexpr int most_naps = 100'000 / nap_us;
     static void nap();
+    static Diagnostic ran_dry();
 
     const StopRequests& stop_requests_;
     const std::atomic<bool>& finished_;
+    const int most_dry_naps_;
     EventRing ring_{ring_events};
     std::atomic<bool> filled_{false};  // the ring is full, or all there will be is in it
 };

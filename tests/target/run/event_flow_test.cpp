@@ -1,0 +1,54 @@
+// Contract of target/run/event_flow.h, by number.
+
+#include "target/run/event_flow.h"
+
+#include <doctest/doctest.h>
+
+#include <thread>
+
+using namespace lyr;
+using namespace lyr::run;
+
+TEST_CASE(
+    "event flow 3: a planner that hung left the head where it was, and the heat on, for ever") {
+    const StopRequests stop_requests{0};
+    const std::atomic<bool> finished{false};
+    EventFlow flow(stop_requests, finished, 20);
+    std::vector<LineEvent> events(EventFlow::ring_events);
+    for (std::size_t i = 0; i < events.size(); ++i)
+        events[i].time_ns = static_cast<std::int64_t>(i);
+    std::thread planner([&] {
+        flow.put(events);
+        flow.put(std::span(events).first(1));  // full now: it may begin
+    });
+    std::size_t taken = 0;
+    const Result<bool> drained = flow.drain([&](std::span<const LineEvent> few) -> Result<bool> {
+        taken += few.size();
+        return true;
+    });
+    planner.join();
+    REQUIRE_FALSE(drained.ok());
+    CHECK(drained.error().status == ExitStatus::machine);
+    CHECK(drained.error().message.find("hangs") != std::string::npos);
+    CHECK(taken == events.size() + 1);
+}
+
+TEST_CASE("event flow 2, 3: all comes out, and a second request to stop ends it at once") {
+    for (const int requests : {0, 2}) {
+        const StopRequests stop_requests{requests};
+        const std::atomic<bool> finished{false};
+        EventFlow flow(stop_requests, finished);
+        const std::vector<LineEvent> events(1000);
+        flow.put(events);
+        if (requests == 0) flow.close();
+        std::size_t taken = 0;
+        const Result<bool> drained =
+            flow.drain([&](std::span<const LineEvent> few) -> Result<bool> {
+                taken += few.size();
+                return true;
+            });
+        REQUIRE(drained.ok());
+        CHECK(*drained == (requests == 0));
+        CHECK(taken == events.size());
+    }
+}
