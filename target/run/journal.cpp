@@ -218,7 +218,10 @@ Status Journal::write(const JournalEntry& entry) {
 void Journal::remove() {
     // What the user named may be no file of ours.
     struct stat kind {};
-    if (::fstat(descriptor_, &kind) == 0 && S_ISREG(kind.st_mode)) (void)::unlink(path_.c_str());
+    if (::fstat(descriptor_, &kind) != 0 || !S_ISREG(kind.st_mode)) return;
+    (void)::unlink(path_.c_str());
+    // Not to come back after a loss of power.
+    sync_folder_of(path_);
 }
 
 JournalWriter::JournalWriter(Journal journal)

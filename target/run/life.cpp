@@ -132,7 +132,6 @@ void Life::rest_for(Command reason) {
     }
     if (phase_ == Phase::resting && unloads) unload();
     if (phase_ != Phase::printing) return;
-    course_.wanted_pace.store(0);
     left_since_s_ = now_s_;
     phase_ = Phase::braking;
 }
@@ -140,6 +139,7 @@ void Life::rest_for(Command reason) {
 // A pause that has not come to rest before the end of the path comes too late.
 void Life::finish() {
     has_finished_ = true;
+    goes_on_ = false;
     reason_ = Pause{};
     if (journal_) journal_->remove();
     park();
@@ -154,10 +154,10 @@ void Life::unload() {
         message_ = "the tool is too cold to move filament: heat it, or change it by hand";
         return;
     }
-    is_unloaded_ = true;
     const Leg leg{parked_at_, -printer_.filament.unload_mm, printer_.filament.speed_mm_s};
+    if (!make(std::span(&leg, 1), parked_at_)) return;
+    is_unloaded_ = stands_ = true;
     phase_ = Phase::parking;
-    make(std::span(&leg, 1), parked_at_);
 }
 
 void Life::resume() {
@@ -209,11 +209,12 @@ void Life::set_temperature(const SetTemperature& set) {
 void Life::advance() {
     const bool rests = course_.at_rest.load(std::memory_order_acquire);
     const bool travels = course_.trip.load(std::memory_order_acquire) != nullptr;
+    if (!rests) leaves_ = false;
     if (phase_ == Phase::printing && course_.wanted_pace.load() != pace())
         course_.wanted_pace.store(pace());
     const bool ends = course_.at_end.load() && !cancels();
     if (ends && rests && (phase_ == Phase::printing || phase_ == Phase::braking)) return finish();
-    if (phase_ == Phase::braking && rests) return park();
+    if (phase_ == Phase::braking) return brake(rests);
     if (phase_ == Phase::parking && !travels) return parked();
     if (phase_ == Phase::resting) return rest();
     if (phase_ == Phase::heating) return wait_for_heat();
@@ -226,21 +227,33 @@ bool Life::can_push() const {
     return !tool.is_present || !settings || tool.temperature_c >= settings->min_extrude_c;
 }
 
-void Life::make(std::span<const Leg> legs, const motion::Point& from) {
+// It leaves the rest before the next one can begin: what is at rest then is so for this pause.
+void Life::brake(bool rests) {
+    if (leaves_ && rests) return;
+    leaves_ = false;
+    course_.wanted_pace.store(0);
+    if (rests) return park();
+    // A path of which no more comes does not come to rest, either.
+    if (!cancels()) let_cool(now_s_ - left_since_s_);
+}
+
+bool Life::make(std::span<const Leg> legs, const motion::Point& from) {
     // Before the path, the drivers are switched on by it.
     const gpio::LineMask levels =
         course_.started.load() ? course_.levels.load() : line_layout(printer_).enable;
     Result<Trip> trip = plan_trip(printer_, from, legs, levels);
     if (!trip) {
         message_ = "the head stays where it is: " + trip.error().message;
-        return;
+        return false;
     }
     trip_ = std::move(*trip);
     course_.trip.store(&trip_, std::memory_order_release);
+    return true;
 }
 
 void Life::park() {
     phase_ = Phase::parking;
+    stands_ = false;
     left_at_ = parked_at_ = head();
     // Before the first motion there is nothing to come away from.
     if (!course_.started.load()) return;
@@ -255,7 +268,9 @@ void Life::park() {
     const std::array<Leg, 3> legs{{{left_at_, -drawn_back_mm_, filament_mm_s},
                                    {{left_at_.x, left_at_.y, z_mm}, 0, pause.speed_mm_s},
                                    {parked_at_, 0, pause.speed_mm_s}}};
-    make(legs, left_at_);
+    if (make(legs, left_at_)) return;
+    parked_at_ = left_at_;
+    drawn_back_mm_ = 0;
 }
 
 void Life::parked() {
@@ -276,7 +291,10 @@ void Life::parked() {
 
 void Life::rest() {
     if (cancels()) return parked();
-    const double rested_s = now_s_ - rest_since_s_;
+    let_cool(now_s_ - rest_since_s_);
+}
+
+void Life::let_cool(double rested_s) {
     std::array<bool, config::heater_count> standby{};
     for (std::size_t i = 0; i < standby.size(); ++i)
         standby[i] = rested_s >= (i == config::heater_tool ? printer_.pause.tool_off_s
@@ -315,16 +333,16 @@ void Life::begin_with(const Resumption& resumption, bool is_lifted) {
     phase_ = Phase::heating;
 }
 
-void Life::lift() {
+bool Life::lift() {
     const Leg leg{{parked_at_.x, parked_at_.y, printer_.start_mm[2]}, 0, printer_.pause.speed_mm_s};
-    make(std::span(&leg, 1), parked_at_);
+    return make(std::span(&leg, 1), parked_at_);
 }
 
 // These two: lifted, and before the path.
-void Life::load() {
+bool Life::load() {
     const config::FilamentSettings& filament = printer_.filament;
     const Leg leg{parked_at_, filament.load_mm + filament.purge_mm, filament.speed_mm_s};
-    make(std::span(&leg, 1), parked_at_);
+    return make(std::span(&leg, 1), parked_at_);
 }
 
 void Life::rest_for_filament() {
@@ -346,8 +364,10 @@ void Life::hear_of_journal() {
 // A height that is too low prints in the air; one that is too high would drive the nozzle into the part. So it is
 // parked from when it has arrived to well before it leaves, and before the path where it was found.
 std::optional<std::int64_t> Life::rest_nm() const {
-    const bool stands = phase_ == Phase::heating || (phase_ == Phase::returning && !is_to_lift_);
-    if (phase_ != Phase::resting && (course_.started.load() || !stands)) return std::nullopt;
+    const bool is_found = phase_ == Phase::heating || (phase_ == Phase::returning && !is_to_lift_);
+    const bool is_away = phase_ == Phase::parking || phase_ == Phase::returning;
+    if (phase_ != Phase::resting && !(is_away && stands_) && (course_.started.load() || !is_found))
+        return std::nullopt;
     return std::llround(parked_at_.z * nm_per_mm);
 }
 
@@ -410,25 +430,42 @@ void Life::press(std::size_t input) {
 void Life::go_back() {
     if (cancels()) return parked();
     phase_ = Phase::returning;
+    if (leave()) return;
+    stands_ = false;
+    phase_ = Phase::resting;
+    rest_since_s_ = now_s_;
+}
+
+// False: it cannot, and the message says why.
+bool Life::leave() {
     if (is_to_lift_) return lift();
-    if (!course_.started.load()) {
-        if (is_unloaded_ && !awaits_filament_) load();
-        return;
-    }
+    if (!course_.started.load()) return !is_unloaded_ || awaits_filament_ || load();
+    stands_ = is_unloaded_;
     const double filament_mm_s = printer_.axes[config::axis_e].max_speed_mm_s;
-    const config::FilamentSettings& filament = printer_.filament;
-    const double load_mm = is_unloaded_ ? filament.load_mm + filament.purge_mm : 0;
-    const double again_mm = is_unloaded_ ? -drawn_back_mm_ : 0;
+    if (stands_) {
+        const config::FilamentSettings& filament = printer_.filament;
+        const double load_mm = filament.load_mm + filament.purge_mm;
+        const std::array<Leg, 2> legs{{{parked_at_, load_mm, filament.speed_mm_s},
+                                       {parked_at_, -drawn_back_mm_, filament_mm_s}}};
+        return make(legs, parked_at_);
+    }
     const double mm_s = printer_.pause.speed_mm_s;
-    const std::array<Leg, 5> legs{{{parked_at_, load_mm, filament.speed_mm_s},
-                                   {parked_at_, again_mm, filament_mm_s},
-                                   {{left_at_.x, left_at_.y, parked_at_.z}, 0, mm_s},
+    const std::array<Leg, 3> legs{{{{left_at_.x, left_at_.y, parked_at_.z}, 0, mm_s},
                                    {left_at_, 0, mm_s},
                                    {left_at_, drawn_back_mm_, filament_mm_s}}};
-    make(legs, parked_at_);
+    return make(legs, parked_at_);
+}
+
+// Put in, still at the park place.
+void Life::loaded() {
+    is_unloaded_ = stands_ = false;
+    if (!cancels() && !rests_again_) return go_back();
+    rests_again_ = false;
+    parked();
 }
 
 void Life::returned() {
+    if (stands_) return loaded();
     drawn_back_mm_ = 0;
     if (is_to_lift_) {
         is_to_lift_ = false;
@@ -444,6 +481,7 @@ void Life::returned() {
     phase_ = Phase::printing;
     paused_s_ += now_s_ - left_since_s_;
     desk_.end_pause();
+    leaves_ = true;
     course_.wanted_pace.store(pace());
 }
 

@@ -106,8 +106,11 @@ private:
     void parked();
     void rest();
     void go_back();
-    void lift();
-    void load();
+    void let_cool(double rested_s);
+    void brake(bool rests);
+    bool leave();
+    bool lift();
+    bool load();
     void rest_for_filament();
     void look();
     void note();
@@ -121,9 +124,10 @@ private:
     void wait_for_heat();
     void hear_of_journal();
     motion::Point head() const;
+    void loaded();
     void returned();
     void unload();
-    void make(std::span<const Leg> legs, const motion::Point& from);
+    bool make(std::span<const Leg> legs, const motion::Point& from);
     bool can_push() const;
     bool changes_filament() const { return std::holds_alternative<ChangeFilament>(reason_); }
     bool cancels() const { return std::holds_alternative<Cancel>(reason_); }
@@ -153,6 +157,8 @@ private:
     bool has_finished_ = false;     // the path
     bool rests_again_ = false;      // as soon as it has returned
     bool goes_on_ = false;          // as soon as it is parked
+    bool stands_ = false;           // at the park place, while only filament moves
+    bool leaves_ = false;           // the rest, as far as is known
     std::array<bool, config::heater_count> standby_{};
     std::optional<double>
         cold_by_hand_c_;  // what the tool was set to in a rest, if no filament can be pushed then

@@ -162,6 +162,15 @@ TEST_CASE("life 4: a pause that comes too late to rest before the end does not k
     }
 }
 
+TEST_CASE("life 4: a pause withdrawn just before the end was told as a resume that is refused") {
+    const double end_s = finished(parking_printer()).report.print_time_s;
+    const std::string script =
+        std::to_string(end_s - 0.05) + " pause\n" + std::to_string(end_s - 0.03) + " resume";
+    const auto [report, status] = finished(parking_printer(), short_file(), script);
+    CHECK(status.message == "");
+    CHECK(report.notes.size() == finished(parking_printer()).report.notes.size());
+}
+
 TEST_CASE("print 5: the way to the park place is that of the simulation, step by step") {
     config::Printer printer = nearby_printer();
     printer.pause.park_mm = {{36, 26}};

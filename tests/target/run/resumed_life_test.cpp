@@ -210,6 +210,81 @@ TEST_CASE("life 7: a pause notes how far the filament is drawn back, by the path
     CHECK_FALSE(parked.is_unloaded);
 }
 
+namespace {
+
+// On its path, and about to be asked for something.
+void begin_path(Resumed& print) {
+    print.printer.heaters = {};
+    print.heated(0);
+    REQUIRE(print.after(1).state == PrintState::printing);
+    print.course.started.store(true);
+    print.course.at_rest.store(false);
+    print.after(2);
+}
+
+void pause_path(Resumed& print) {
+    print.after(3, Pause{});
+    print.course.at_rest.store(true);
+    print.after(4);
+    print.end_trip();
+    REQUIRE(print.after(5).state == PrintState::paused);
+}
+
+}  // namespace
+
+TEST_CASE("life 7: while filament was changed at the park place the height there was not noted") {
+    for (const int turns : {0, 1, 2, 3}) {
+        CAPTURE(turns);
+        Resumed print(true, "changed");
+        begin_path(print);
+        pause_path(print);
+        print.after(6, ChangeFilament{});  // draws it out
+        if (turns > 0) print.end_trip(), print.after(7);
+        if (turns > 1) print.after(8, Resume{}), print.heated(9);  // pushes the next one in
+        if (turns > 2) print.end_trip(), print.after(10);          // and goes back
+        print.after(11);
+        const JournalEntry noted = print.noted();
+        CHECK(noted.is_unloaded == (turns < 3));
+        CHECK(noted.rest_nm.has_value() == (turns < 3));
+        if (noted.rest_nm) CHECK(*noted.rest_nm == 16'500'000);
+    }
+}
+
+TEST_CASE("life 1: a pause right after a resume took the motion for still at rest") {
+    Resumed print(true, "still_at_rest");
+    begin_path(print);
+    pause_path(print);
+    print.after(6, Resume{});
+    print.heated(7);
+    print.end_trip();
+    REQUIRE(print.after(8).state == PrintState::printing);
+    CHECK(print.after(8.02, Pause{}).state == PrintState::pausing);
+    // The motion has not seen that it may go on: it must, first.
+    CHECK(print.course.trip.load() == nullptr);
+    CHECK(print.course.wanted_pace.load() > 0);
+    print.course.at_rest.store(false);
+    print.after(8.04);
+    CHECK(print.course.trip.load() == nullptr);
+    CHECK(print.course.wanted_pace.load() == 0);
+    print.course.at_rest.store(true);
+    print.after(8.06);
+    CHECK(print.course.trip.load() != nullptr);
+}
+
+TEST_CASE("life 3: a pause of a path of which no more came kept all heat on for ever") {
+    Resumed print(true, "no_more_comes");
+    begin_path(print);
+    print.after(3, Pause{});
+    const double tool_off_s = print.printer.pause.tool_off_s;
+    print.after(tool_off_s);
+    CHECK_FALSE(print.desk.take().standby[config::heater_tool]);
+    print.after(4 + tool_off_s);
+    CHECK(print.desk.take().standby[config::heater_tool]);
+    CHECK_FALSE(print.desk.take().standby[config::heater_bed]);
+    print.after(4 + print.printer.pause.bed_off_s);
+    CHECK(print.desk.take().standby[config::heater_bed]);
+}
+
 TEST_CASE("life 7: the path draws back now and then, which a cut on its way is not to believe") {
     Resumed print(true, "on_path");
     print.heated(0);
