@@ -161,6 +161,7 @@ Result<bool> Mover::execute_beside(run::Executor& executor, MoveStream& stream,
     while (!finished.load()) look();
     edges.join();
     maker.join();
+    if (flow.ran_dry()) return run::EventFlow::dry_error();
     const std::int64_t since_ns = clock_.now_ns();
     do look();
     while (may_settle(since_ns));

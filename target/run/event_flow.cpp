@@ -29,7 +29,7 @@ void EventFlow::nap() {
     std::this_thread::sleep_for(std::chrono::microseconds(nap_us));
 }
 
-Diagnostic EventFlow::ran_dry() {
+Diagnostic EventFlow::dry_error() {
     return {Severity::error,
             ExitStatus::machine,
             "no steps have come for seconds: reading the file or planning hangs",

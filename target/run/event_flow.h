@@ -6,8 +6,8 @@
 //  2. drain() begins when the ring is full or holds all there will be. Events come out a few at a time, so that there is
 //     room again early.
 //  3. A ring that has run dry is waited for, and what comes late by that is late as any other event (executor.h, 2 and 4).
-//     Where a stop was asked for, drain() ends after a tenth of a second of that, and at once if it was twice; with an
-//     error (status machine) after some seconds in any case: heat must not stay on a head that stands.
+//     Where a stop was asked for, drain() ends after a tenth of a second of that, and at once if it was twice; in any case
+//     after some seconds, and ran_dry() is true then: heat must not stay on a head that stands.
 //  4. In drain() nothing is allocated or locked.
 
 #pragma once
@@ -28,7 +28,7 @@ public:
     // Of the real-time thread, which has nothing to write.
     static constexpr int nap_us = 50;
 
-    // `finished`: the real-time thread has ended. After so many naps a dry ring is an error.
+    // `finished`: the real-time thread has ended. After so many naps the ring has run dry.
     EventFlow(const StopRequests& stop_requests, const std::atomic<bool>& finished,
               int most_dry_naps = 5'000'000 / nap_us)
         : stop_requests_(stop_requests), finished_(finished), most_dry_naps_(most_dry_naps) {}
@@ -47,7 +47,10 @@ public:
             if (events.empty()) {
                 ++naps;
                 if (stops() && (naps > most_naps || stop_requests_.load() > 1)) return false;
-                if (naps > most_dry_naps_) return ran_dry();
+                if (naps > most_dry_naps_) {
+                    ran_dry_ = true;
+                    return false;
+                }
                 nap();
                 continue;
             }
@@ -60,15 +63,19 @@ public:
         return true;
     }
 
+    // After drain().
+    bool ran_dry() const { return ran_dry_; }
+    static Diagnostic dry_error();
+
 private:
     bool stops() const { return stop_requests_.load() != 0; }
     static constexpr int most_naps = 100'000 / nap_us;
     static void nap();
-    static Diagnostic ran_dry();
 
     const StopRequests& stop_requests_;
     const std::atomic<bool>& finished_;
     const int most_dry_naps_;
+    bool ran_dry_ = false;
     EventRing ring_{ring_events};
     std::atomic<bool> filled_{false};  // the ring is full, or all there will be is in it
 };

@@ -195,6 +195,14 @@ Diagnostic stopped(const Shared& shared, const Life& life) {
             {}};
 }
 
+// The head stands after a whole pulse.
+Diagnostic dried(const Life& life) {
+    Diagnostic error = EventFlow::dry_error();
+    error.message += formatted("; in layer %u after %.1f s; all lines are released", life.layer(),
+                               life.time_s());
+    return error;
+}
+
 // A line that cannot be written, or an edge that came too late.
 Diagnostic derailed(Diagnostic error) {
     if (error.message.find("position is lost") == std::string::npos)
@@ -261,6 +269,7 @@ struct Outcome {
 Status status_of(Shared& shared, const Life& life, const Outcome& outcome) {
     if (const auto trip = shared.trip()) return diagnostic_of(*trip);
     if (!outcome.executed) return derailed(outcome.executed.error());
+    if (shared.flow->ran_dry()) return dried(life);
     if (!outcome.planned) return outcome.planned.error();
     if (!*outcome.executed) return stopped(shared, life);
     return Done{};
