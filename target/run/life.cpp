@@ -59,7 +59,6 @@ void Life::tick(double now_s) {
     if (!begun_s_) begun_s_ = left_since_s_ = now_s;
     now_s_ = now_s;
     look();
-    note();
     while (const std::optional<Command> command = control_.take()) serve(*command);
     if (const auto pause = desk_.now().pause; pause && phase_ == Phase::printing) {
         if (*pause == format::PauseReason::filament_change)
@@ -70,6 +69,7 @@ void Life::tick(double now_s) {
             "the file asks for " + std::string(changes_filament() ? "another filament" : "a pause");
     }
     advance();
+    note();
     publish(state(), true);
 }
 

@@ -250,6 +250,13 @@ TEST_CASE("life 7: while filament was changed at the park place the height there
     }
 }
 
+TEST_CASE("life 7: a print said that it rests, and noted how high a tick later") {
+    Resumed print(true, "tick_later");
+    begin_path(print);
+    pause_path(print);
+    CHECK(print.noted().rest_nm == 16'500'000);
+}
+
 TEST_CASE("life 1: a pause right after a resume took the motion for still at rest") {
     Resumed print(true, "still_at_rest");
     begin_path(print);
