@@ -67,7 +67,8 @@ TEST_CASE("C reader 2 and 3: the same verdict wherever the file is cut, and the 
     CHECK(difference(longer) == "");
 }
 
-TEST_CASE("C reader 3 and 4: the same verdict on any byte of any payload, with a right CRC") {
+TEST_CASE("C reader 3 and 4: the same verdict on any byte of any payload, with a right CRC" *
+          doctest::test_suite("long")) {
     const FileBytes file = test::small_file();
     const std::vector<test::Block> blocks = test::split(file);
     std::mt19937 random(5);

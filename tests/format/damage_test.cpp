@@ -229,7 +229,8 @@ TEST_CASE("reader 5: an absurd number of empty hatch rows takes no time") {
     CHECK(reading.given.size() == 3);
 }
 
-TEST_CASE("reader 5: random bytes as operations never leave the limits") {
+TEST_CASE("reader 5: random bytes as operations never leave the limits" *
+          doctest::test_suite("long")) {
     std::uint64_t given = 0;
     test::with_random_operations([&](const FileBytes& file) {
         for (const test::Given& one : test::read_bytes(file).given) {

@@ -117,7 +117,8 @@ private:
 
 }  // namespace
 
-TEST_CASE("reader 6: a pipe gives what the file gives, and seeking reads on") {
+TEST_CASE("reader 6: a pipe gives what the file gives, and seeking reads on" *
+          doctest::test_suite("long")) {
     const std::string path = random_file("pipe", 6);
     const test::Reading whole = test::read_file(path);
     REQUIRE(!whole.error);

@@ -62,7 +62,8 @@ TEST_CASE("slow sensor 1: quick ones are left alone, and the slowest are refused
     CHECK(unhurried(sensor_on(bus)).error().message == "no such device");
 }
 
-TEST_CASE("slow sensor 2, 3, 4: what was read last, and nothing once it is too old") {
+TEST_CASE("slow sensor 2, 3, 4: what was read last, and nothing once it is too old" *
+          doctest::test_suite("long")) {
     const auto bus = std::make_shared<Bus>();
     auto sensor = unhurried(sensor_on(bus));
     REQUIRE(sensor.ok());
