@@ -46,10 +46,19 @@ Status append(Outputs& all, const std::string& section, const std::optional<conf
     return Done{};
 }
 
-// Kernel PWM channels belong to nobody: what is left on one stays.
-void drop_channels(const config::Printer& printer) {
-    for (const std::optional<config::Heater>& heater : printer.heaters)
-        if (heater && !heater->pwm.empty()) (void)thermal::KernelPwm::open(heater->pwm);
+std::string section_of(std::size_t heater) {
+    return "heater." + std::string(config::heater_names[heater]);
+}
+
+// Kernel PWM channels belong to nobody: what is left on one stays. All are tried; the first error.
+Status drop_channels(const config::Printer& printer) {
+    Status dropped = Done{};
+    for (const std::optional<config::Heater>& heater : printer.heaters) {
+        if (!heater || heater->pwm.empty()) continue;
+        const auto channel = thermal::KernelPwm::open(heater->pwm);
+        if (!channel && dropped) dropped = channel.error();
+    }
+    return dropped;
 }
 
 // All outputs are kernel PWM channels: their keeper has no line, and is written to all the same.
@@ -68,7 +77,7 @@ OpenChip opener_of(std::vector<gpio::LineRequest> requests) {
 
 Result<thermal::HeaterPort> open_port(const config::Printer& printer, std::size_t number) {
     const config::Heater& heater = *printer.heaters[number];
-    const std::string section = "heater." + std::string(config::heater_names[number]);
+    const std::string section = section_of(number);
     if (heater.sensor.file.empty()) return missing(printer, section + ".sensor.file");
     if (!heater.output && heater.pwm.empty()) return missing(printer, section + ".output or .pwm");
     auto sensor = thermal::open_file_sensor(heater.sensor.file);
@@ -91,7 +100,7 @@ Result<Heating> open_heating(const config::Printer& printer) {
         Result<thermal::HeaterPort> port = open_port(printer, i);
         if (!port) return port.error();
         const config::Heater& heater = *printer.heaters[i];
-        const std::string section = "heater." + std::string(config::heater_names[i]);
+        const std::string section = section_of(i);
         if (Status added = append(all, section, heater.output, heater.pwm, heater.cycle_s, true);
             !added)
             return added.error();
@@ -105,7 +114,7 @@ Result<Heating> open_heating(const config::Printer& printer) {
             return added.error();
     Heating heating;
     if (!all.outputs.empty()) {
-        const auto drop = [&] { drop_channels(printer); };
+        const auto drop = [&] { (void)drop_channels(printer); };
         auto chip = keep_lines(all.requests.size(), opener_of(all.requests), silent_ms, drop);
         if (!chip) return chip.error();
         heating.chip = std::move(*chip);
@@ -122,16 +131,12 @@ Status switch_off(const config::Printer& printer, const OpenLines& open) {
     if (!requests) return requests.error();
     for (std::size_t i = 0; i < config::heater_count; ++i)
         if (const auto& heater = printer.heaters[i]; heater && heater->output)
-            requests->push_back(line_request(
-                "heater." + std::string(config::heater_names[i]) + ".output", *heater->output));
+            requests->push_back(line_request(section_of(i) + ".output", *heater->output));
     const Result<std::unique_ptr<gpio::GpioChip>> chip = open(*requests);
     if (!chip) return chip.error();
-    for (const std::optional<config::Heater>& heater : printer.heaters) {
-        if (!heater || heater->pwm.empty()) continue;
-        if (const auto channel = thermal::KernelPwm::open(heater->pwm); !channel)
-            return channel.error();
-    }
-    return (*chip)->release();
+    const Status dropped = drop_channels(printer);
+    const Status released = (*chip)->release();
+    return dropped ? released : dropped;
 }
 
 double heat_time_s() {
