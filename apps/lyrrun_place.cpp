@@ -112,8 +112,7 @@ void add_place_options(Options& app, PlaceArguments& arguments) {
         },
         "Move the head by so much from the start of a print, in place of one; homes first where "
         "the printer can, else the head is in the middle of its ranges. e=MM alone: push filament, "
-        "or "
-        "draw it out, with --tool");
+        "or draw it out, with --tool");
     add_text(
         app, "--tool", "C",
         [&arguments](const std::string& value) -> std::optional<std::string> {

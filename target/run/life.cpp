@@ -156,7 +156,7 @@ void Life::unload() {
     }
     const Leg leg{parked_at_, -printer_.filament.unload_mm, printer_.filament.speed_mm_s};
     if (!make(std::span(&leg, 1), parked_at_)) return;
-    is_unloaded_ = stands_ = true;
+    is_unloaded_ = unloads_ = true;
     phase_ = Phase::parking;
 }
 
@@ -253,7 +253,7 @@ bool Life::make(std::span<const Leg> legs, const motion::Point& from) {
 
 void Life::park() {
     phase_ = Phase::parking;
-    stands_ = false;
+    unloads_ = false;
     left_at_ = parked_at_ = head();
     // Before the first motion there is nothing to come away from.
     if (!course_.started.load()) return;
@@ -365,9 +365,8 @@ void Life::hear_of_journal() {
 // parked from when it has arrived to well before it leaves, and before the path where it was found.
 std::optional<std::int64_t> Life::rest_nm() const {
     const bool is_found = phase_ == Phase::heating || (phase_ == Phase::returning && !is_to_lift_);
-    const bool is_away = phase_ == Phase::parking || phase_ == Phase::returning;
-    if (phase_ != Phase::resting && !(is_away && stands_) && (course_.started.load() || !is_found))
-        return std::nullopt;
+    const bool is_parked = phase_ == Phase::resting || (phase_ == Phase::parking && unloads_);
+    if (!is_parked && (course_.started.load() || !is_found)) return std::nullopt;
     return std::llround(parked_at_.z * nm_per_mm);
 }
 
@@ -431,7 +430,6 @@ void Life::go_back() {
     if (cancels()) return parked();
     phase_ = Phase::returning;
     if (leave()) return;
-    stands_ = false;
     phase_ = Phase::resting;
     rest_since_s_ = now_s_;
 }
@@ -440,32 +438,20 @@ void Life::go_back() {
 bool Life::leave() {
     if (is_to_lift_) return lift();
     if (!course_.started.load()) return !is_unloaded_ || awaits_filament_ || load();
-    stands_ = is_unloaded_;
     const double filament_mm_s = printer_.axes[config::axis_e].max_speed_mm_s;
-    if (stands_) {
-        const config::FilamentSettings& filament = printer_.filament;
-        const double load_mm = filament.load_mm + filament.purge_mm;
-        const std::array<Leg, 2> legs{{{parked_at_, load_mm, filament.speed_mm_s},
-                                       {parked_at_, -drawn_back_mm_, filament_mm_s}}};
-        return make(legs, parked_at_);
-    }
+    const config::FilamentSettings& filament = printer_.filament;
+    const double load_mm = is_unloaded_ ? filament.load_mm + filament.purge_mm : 0;
+    const double again_mm = is_unloaded_ ? -drawn_back_mm_ : 0;
     const double mm_s = printer_.pause.speed_mm_s;
-    const std::array<Leg, 3> legs{{{{left_at_.x, left_at_.y, parked_at_.z}, 0, mm_s},
+    const std::array<Leg, 5> legs{{{parked_at_, load_mm, filament.speed_mm_s},
+                                   {parked_at_, again_mm, filament_mm_s},
+                                   {{left_at_.x, left_at_.y, parked_at_.z}, 0, mm_s},
                                    {left_at_, 0, mm_s},
                                    {left_at_, drawn_back_mm_, filament_mm_s}}};
     return make(legs, parked_at_);
 }
 
-// Put in, still at the park place.
-void Life::loaded() {
-    is_unloaded_ = stands_ = false;
-    if (!cancels() && !rests_again_) return go_back();
-    rests_again_ = false;
-    parked();
-}
-
 void Life::returned() {
-    if (stands_) return loaded();
     drawn_back_mm_ = 0;
     if (is_to_lift_) {
         is_to_lift_ = false;

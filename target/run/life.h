@@ -124,7 +124,6 @@ private:
     void wait_for_heat();
     void hear_of_journal();
     motion::Point head() const;
-    void loaded();
     void returned();
     void unload();
     bool make(std::span<const Leg> legs, const motion::Point& from);
@@ -157,7 +156,7 @@ private:
     bool has_finished_ = false;     // the path
     bool rests_again_ = false;      // as soon as it has returned
     bool goes_on_ = false;          // as soon as it is parked
-    bool stands_ = false;           // at the park place, while only filament moves
+    bool unloads_ = false;          // parks no more, while it is `parking`: only filament moves
     bool leaves_ = false;           // the rest, as far as is known
     std::array<bool, config::heater_count> standby_{};
     std::optional<double>
