@@ -103,10 +103,6 @@ void FilePath::visit(const format::Tool& tool) {
     demands_.highest_tool = std::max(demands_.highest_tool, tool.tool);
 }
 
-void FilePath::visit(const format::Dwell& dwell) {
-    demands_.dwell_s += dwell.time_ms / 1e3;
-}
-
 void FilePath::visit(const format::Pause&) {
     ++demands_.pauses;
 }

@@ -33,7 +33,6 @@ struct Demands {
     std::vector<std::uint32_t> fans;            // each fan that is ever on, once
     std::uint32_t highest_tool = 0;
     std::uint32_t pauses = 0;
-    double dwell_s = 0;
     // The lowest temperature that the tool is sure to have where filament is pushed: that of the last wait, or of a
     // lower target since. None: no filament is.
     std::optional<double> coldest_extrusion_c;
@@ -65,7 +64,6 @@ private:
     void visit(const format::Temperature& temperature);
     void visit(const format::Fan& fan);
     void visit(const format::Tool& tool);
-    void visit(const format::Dwell& dwell);
     void visit(const format::Pause& pause);
     template <class Other>
     void visit(const Other&) {}

@@ -2,6 +2,8 @@
 
 #include "target/run/step_stream.h"
 
+#include <algorithm>
+
 #include "base/constants.h"
 #include "target/run/inspect.h"
 
@@ -11,6 +13,9 @@ namespace {
 constexpr std::size_t batch_events = 2048;
 // Orders that stand between the moves of a full planner are fewer, but for a file that means harm.
 constexpr std::size_t most_waiting = 4 * motion::Planner::default_capacity;
+// Three years, far from where nanoseconds no longer fit.
+constexpr std::int64_t longest_ns = static_cast<std::int64_t>(1e8 * ns_per_s);
+constexpr const char* too_long = "the print would take longer than three years";
 
 }  // namespace
 
@@ -48,6 +53,7 @@ Result<bool> StepStream::next(std::vector<Step>& steps) {
         room -= take(room, steps);
         if (room == 0) break;
         motion::PlannedMove& move = moves_.emplace_back();
+        const std::int64_t ended_ns = planner_.time_ns();
         while (!planner_.pop(move)) {
             if (read_all_) {
                 moves_.pop_back();
@@ -55,12 +61,13 @@ Result<bool> StepStream::next(std::vector<Step>& steps) {
             }
             if (const Status planned = plan(); !planned) return planned.error();
         }
+        if (planner_.time_ns() > longest_ns) return refused(too_long);
         note_begin(move);
         if (!waiting_.empty() && waiting_.front().before_move <= popped_) {
             // What lags behind the plan comes first.
             generator_.rest_until(move.start_ns);
             while (take(events_.size(), steps) == events_.size()) continue;
-            give_orders(move.start_ns, steps);
+            give_orders(ended_ns, steps);
         }
         ++popped_;
         generator_.start(move);
@@ -72,7 +79,8 @@ Result<bool> StepStream::next(std::vector<Step>& steps) {
 bool StepStream::finish(std::vector<Step>& steps) {
     generator_.finish();
     if (take(events_.size(), steps) == events_.size()) return true;
-    give_orders(time_ns(), steps);
+    end_rest_ns_ = rested_ns_;
+    give_orders(planner_.time_ns(), steps);
     return false;
 }
 
@@ -97,7 +105,8 @@ Status StepStream::plan() {
             planner_.flush();
             return Done{};
         }
-        if (const auto* rest = std::get_if<Rest>(&*held_)) planner_.dwell(rest->time_s);
+        if (const auto* dwell = std::get_if<Rest>(&*held_))
+            if (Status rested = rest(dwell->time_s); !rested) return rested;
         if (const auto* order = std::get_if<HeatOrder>(&*held_))
             if (Status planned = plan(*order); !planned) return planned;
         if (const auto* move = std::get_if<motion::Move>(&*held_))
@@ -130,36 +139,53 @@ Status StepStream::plan(motion::Move move) {
         return error;
     }
     // What is shorter, the planner leaves out.
-    if (motion::length_of(move.path) >= motion::Planner::shortest_mm) ++pushed_;
+    if (motion::length_of(move.path) < motion::Planner::shortest_mm) return Done{};
+    ++pushed_;
+    rested_ns_ = 0;
     return Done{};
+}
+
+Status StepStream::rest(double time_s) {
+    planner_.dwell(time_s);
+    rested_ns_ +=
+        static_cast<std::int64_t>(std::min(time_s, motion::Planner::longest_s) * ns_per_s);
+    if (rested_ns_ > longest_ns) return refused(too_long);
+    return Done{};
+}
+
+Diagnostic StepStream::refused(const char* why) const {
+    return {Severity::error, ExitStatus::input, why, {.file = path_}};
 }
 
 Status StepStream::plan(const HeatOrder& asked) {
     const std::optional<HeatOrder> heeded = orders_ ? orders_->heed(asked) : std::nullopt;
     if (!heeded) return Done{};
     const HeatOrder& order = *heeded;
+    const bool same_place = !waiting_.empty() && waiting_.back().before_move == pushed_ &&
+                            waiting_.back().rested_ns == rested_ns_;
     // All motors rest when the head does, and what lags behind it has come.
-    if (order.is_gate()) planner_.dwell(static_cast<double>(generator_.tail_ns()) / ns_per_s);
-    const bool same_place = !waiting_.empty() && waiting_.back().before_move == pushed_;
-    if (same_place && join(waiting_.back().order, order)) return Done{};
+    if (order.is_gate())
+        if (Status rested = rest(static_cast<double>(generator_.tail_ns()) / ns_per_s); !rested)
+            return rested;
+    if (same_place && join(waiting_.back().order, order)) {
+        waiting_.back().rested_ns = rested_ns_;
+        return Done{};
+    }
     if (waiting_.size() == most_waiting)
-        return Diagnostic{Severity::error,
-                          ExitStatus::input,
-                          "the file waits for temperatures thousands of times between two moves",
-                          {.file = path_}};
-    waiting_.push_back({pushed_, order});
+        return refused("the file waits for temperatures thousands of times between two moves");
+    waiting_.push_back({pushed_, order, rested_ns_});
     return Done{};
 }
 
-void StepStream::give_orders(std::int64_t time_ns, std::vector<Step>& steps) {
+void StepStream::give_orders(std::int64_t ended_ns, std::vector<Step>& steps) {
     // Without a rest, steps of the next move that run ahead of it follow closely.
     const bool lags = generator_.tail_ns() > 0;
     for (; !waiting_.empty() && waiting_.front().before_move <= popped_; waiting_.pop_front()) {
-        const HeatOrder& order = waiting_.front().order;
+        const auto& [before_move, order, rested_ns] = waiting_.front();
         orders_->push(order);
-        steps.push_back(
-            {lags && !order.is_gate() ? last_ns_ : time_ns, mark_axis, order.is_gate()});
-        last_ns_ = steps.back().time_ns;
+        const bool follows = lags && rested_ns == 0;
+        if (!follows) last_ns_ = std::max(last_ns_, ended_ns + rested_ns);
+        steps.push_back({last_ns_, mark_axis, order.is_gate()});
     }
 }
 

@@ -48,7 +48,9 @@ public:
 
     const std::vector<motion::PlannedMove>& moves() const { return moves_; }
     // Where the move begun last ends, or a rest after it; the last steps may come so late.
-    std::int64_t time_ns() const { return planner_.time_ns() + generator_.tail_ns(); }
+    std::int64_t time_ns() const {
+        return planner_.time_ns() + generator_.tail_ns() + end_rest_ns_;
+    }
     // Of the move begun last, from 1; 0 before the first.
     std::uint32_t layer() const { return layer_; }
     // Multiplies the speeds of moves that are not planned yet.
@@ -59,10 +61,11 @@ public:
     const std::vector<LayerBegin>& begun() const { return begun_; }
 
 private:
-    // An order and the number of the move that it stands before.
+    // An order, the number of the move that it stands before, and how long after the end of the one before that.
     struct Waiting {
         std::uint64_t before_move;
         HeatOrder order;
+        std::int64_t rested_ns;
     };
 
     // How moves are made, and the number of the one from which that holds.
@@ -79,11 +82,13 @@ private:
     Status plan(motion::Move move);
     void note_begin(const motion::PlannedMove& move);
     Status plan(const HeatOrder& asked);
+    Status rest(double time_s);
+    Diagnostic refused(const char* why) const;
     // Appends the next steps of what is known, at most so many; how many events they were.
     std::size_t take(std::size_t most, std::vector<Step>& steps);
     bool finish(std::vector<Step>& steps);
-    // The orders that stand before the move that begins.
-    void give_orders(std::int64_t time_ns, std::vector<Step>& steps);
+    // The orders that stand before the move that begins, of a plan that has come to `ended_ns` before.
+    void give_orders(std::int64_t ended_ns, std::vector<Step>& steps);
 
     std::string path_;  // for messages
     Interpreter interpreter_;
@@ -101,7 +106,9 @@ private:
     const std::atomic<float>* speed_factor_ = nullptr;
     std::deque<Manner> manners_;
     std::vector<LayerBegin> begun_;
-    std::int64_t last_ns_ = 0;  // of the steps so far
+    std::int64_t last_ns_ = 0;    // of the steps so far
+    std::int64_t rested_ns_ = 0;  // since the move planned last
+    std::int64_t end_rest_ns_ = 0;
 };
 
 }  // namespace lyr::run

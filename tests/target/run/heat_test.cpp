@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <csignal>
@@ -245,6 +247,71 @@ TEST_CASE("step stream 2: orders between two moves are one, and memory does not 
     CHECK(order.fan_duty == 0.1);
     CHECK(order.is_gate());
     CHECK_FALSE(join(order, next));
+}
+
+TEST_CASE(
+    "step stream 5: an order before a dwell took effect after it, and a dwell at the end was "
+    "dropped") {
+    const std::string file = write_print("dwells", {[](const Pen& pen) {
+                                             draw_square(pen);
+                                             pen.layer.fan(0, 0.5);
+                                             pen.layer.dwell(2'000);
+                                             pen.layer.fan(0, 0.7);
+                                             pen.layer.dwell(1'000);
+                                             pen.line(9, 0);
+                                             pen.layer.fan(0, 0.2);
+                                             pen.layer.dwell(3'000);
+                                         }});
+    config::Printer plain = config::generic_printer(), shaped = plain;
+    shaped.pressure_advance_s = 0.04;
+    for (const config::Printer& printer : {plain, shaped}) {
+        OrderQueue orders({true, false});
+        auto stream = StepStream::open(file, printer, 1.75, &orders);
+        REQUIRE(stream.ok());
+        std::vector<Step> steps;
+        for (bool more = true; more;) {
+            const auto next = stream->next(steps);
+            REQUIRE(next.ok());
+            more = *next;
+        }
+        CHECK(std::is_sorted(steps.begin(), steps.end(),
+                             [](const Step& a, const Step& b) { return a.time_ns < b.time_ns; }));
+        // How long nothing steps before and after each order, to a millisecond.
+        std::vector<std::int64_t> before_ms, after_ms;
+        for (std::size_t i = 0; i < steps.size(); ++i) {
+            if (steps[i].axis != mark_axis) continue;
+            const std::int64_t end_ns =
+                i + 1 < steps.size() ? steps[i + 1].time_ns : stream->time_ns();
+            before_ms.push_back((steps[i].time_ns - steps[i - 1].time_ns + 500'000) / 1'000'000);
+            after_ms.push_back((end_ns - steps[i].time_ns + 500'000) / 1'000'000);
+        }
+        REQUIRE(after_ms.size() == 3);
+        const std::array<std::int64_t, 3> rests_ms{2'000, 1'000, 3'000};
+        // The first and the last step are some way from the corners; what lags takes as long again.
+        constexpr std::int64_t slack_ms = 60;
+        CHECK(before_ms[0] <= slack_ms);
+        CHECK(std::abs(before_ms[1] - 2'000) <= slack_ms);
+        CHECK(before_ms[2] <= slack_ms);
+        for (std::size_t i = 0; i < rests_ms.size(); ++i)
+            CHECK(std::abs(after_ms[i] - rests_ms[i]) <= slack_ms);
+    }
+}
+
+TEST_CASE("step stream: a print of centuries overflowed its clock") {
+    const std::string file = write_print("centuries", {[](const Pen& pen) {
+                                             draw_square(pen);
+                                             for (int i = 0; i < 10'000; ++i)
+                                                 pen.layer.dwell(4'000'000'000);
+                                             pen.line(9, 0);
+                                         }});
+    auto stream = StepStream::open(file, config::generic_printer(), 1.75);
+    REQUIRE(stream.ok());
+    std::vector<Step> steps;
+    Result<bool> next = true;
+    while (next && *next) next = stream->next(steps);
+    REQUIRE_FALSE(next.ok());
+    CHECK(next.error().status == ExitStatus::input);
+    CHECK(next.error().message.find("three years") != std::string::npos);
 }
 
 TEST_CASE(
