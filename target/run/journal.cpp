@@ -253,6 +253,11 @@ void JournalWriter::remove() {
     changed_.notify_one();
 }
 
+bool JournalWriter::is_idle() {
+    const std::lock_guard lock(mutex_);
+    return !waiting_ && !is_writing_;
+}
+
 std::optional<Diagnostic> JournalWriter::take_error() {
     const std::lock_guard lock(mutex_);
     return std::exchange(error_, std::nullopt);
@@ -265,9 +270,11 @@ void JournalWriter::work() {
         if (removes_) return journal_.remove();
         if (!waiting_) return;
         const JournalEntry entry = *std::exchange(waiting_, std::nullopt);
+        is_writing_ = true;
         lock.unlock();
         const Status written = journal_.write(entry);
         lock.lock();
+        is_writing_ = false;
         if (!written && !has_failed_) error_ = written.error();
         has_failed_ = has_failed_ || !written;
     }

@@ -85,6 +85,8 @@ public:
     JournalWriter& operator=(const JournalWriter&) = delete;
 
     void post(const JournalEntry& entry);
+    // All that was posted is on the disk, or could not be written.
+    bool is_idle();
     std::optional<Diagnostic> take_error();
     // At once and for good: neither what waits nor what is posted later is written.
     void remove();
@@ -99,7 +101,7 @@ private:
     std::condition_variable changed_;
     std::optional<JournalEntry> waiting_;
     std::optional<Diagnostic> error_;
-    bool has_failed_ = false, ends_ = false, removes_ = false;
+    bool is_writing_ = false, has_failed_ = false, ends_ = false, removes_ = false;
     std::thread thread_;
 };
 

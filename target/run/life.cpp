@@ -121,7 +121,7 @@ void Life::rest_for(Command reason) {
     const bool unloads = std::holds_alternative<ChangeFilament>(reason) && !is_unloaded_;
     // One that rests does so already, and one that is about to go on rests again.
     if (phase_ == Phase::heating) phase_ = Phase::resting, rest_since_s_ = now_s_;
-    rests_again_ = phase_ == Phase::returning;
+    rests_again_ = phase_ == Phase::loading || phase_ == Phase::returning;
     goes_on_ = false;
     reason_ = reason;
     message_.clear();
@@ -156,12 +156,32 @@ void Life::unload() {
     }
     const Leg leg{parked_at_, -printer_.filament.unload_mm, printer_.filament.speed_mm_s};
     if (!make(std::span(&leg, 1), parked_at_)) return;
-    is_unloaded_ = unloads_ = true;
-    phase_ = Phase::parking;
+    is_unloaded_ = true;
+    phase_ = Phase::unloading;
+}
+
+void Life::load() {
+    const config::FilamentSettings& filament = printer_.filament;
+    const double again_mm_s = printer_.axes[config::axis_e].max_speed_mm_s;
+    const std::array<Leg, 2> legs{
+        {{parked_at_, filament.load_mm + filament.purge_mm, filament.speed_mm_s},
+         {parked_at_, -drawn_back_mm_, again_mm_s}}};
+    phase_ = Phase::loading;
+    if (make(legs, parked_at_)) return;
+    phase_ = Phase::resting;
+    rest_since_s_ = now_s_;
+}
+
+void Life::loaded() {
+    is_unloaded_ = false;
+    phase_ = Phase::heating;
+    heating_since_s_.reset();
+    if (cancels() || std::exchange(rests_again_, false)) parked();
 }
 
 void Life::resume() {
-    const bool comes_to_rest = phase_ == Phase::braking || phase_ == Phase::parking;
+    const bool comes_to_rest =
+        phase_ == Phase::braking || phase_ == Phase::parking || phase_ == Phase::unloading;
     if ((comes_to_rest || rests_again_) && !cancels() && !has_finished_) {
         if (comes_to_rest && changes_filament())
             return refuse(Resume{}, "the filament is still being drawn out");
@@ -180,19 +200,29 @@ void Life::resume() {
     standby_.fill(false);
     desk_.set_standby(standby_);
     phase_ = Phase::heating;
+    departs_ = false;
     heating_since_s_.reset();
 }
 
 void Life::wait_for_heat() {
-    if (desk_.settled()) return go_back();
+    if (desk_.settled()) {
+        if (is_unloaded_ && !awaits_filament_) return load();
+        if (may_leave()) return go_back();
+    }
     if (!heating_since_s_) heating_since_s_ = now_s_;
     if (now_s_ - *heating_since_s_ < longest_wait_s) return;
     // What has not come by then never will, and nobody may be there.
-    message_ =
-        "the heaters have not reached their targets within an hour and are off; the print rests";
+    message_ = std::string(departs_ ? "the journal's disk has not answered"
+                                    : "the heaters have not reached their targets") +
+               " within an hour, and the heaters are off; the print rests";
     phase_ = Phase::resting;
     rest_since_s_ = now_s_ - std::max(printer_.pause.tool_off_s, printer_.pause.bed_off_s);
     rest();
+}
+
+// The journal's thread tells what it has written a tick later at the earliest.
+bool Life::may_leave() {
+    return !journal_ || (std::exchange(departs_, true) && journal_->is_idle());
 }
 
 void Life::set_temperature(const SetTemperature& set) {
@@ -215,7 +245,8 @@ void Life::advance() {
     const bool ends = course_.at_end.load() && !cancels();
     if (ends && rests && (phase_ == Phase::printing || phase_ == Phase::braking)) return finish();
     if (phase_ == Phase::braking) return brake(rests);
-    if (phase_ == Phase::parking && !travels) return parked();
+    if ((phase_ == Phase::parking || phase_ == Phase::unloading) && !travels) return parked();
+    if (phase_ == Phase::loading && !travels) return loaded();
     if (phase_ == Phase::resting) return rest();
     if (phase_ == Phase::heating) return wait_for_heat();
     if (phase_ == Phase::returning && !travels) return returned();
@@ -253,7 +284,6 @@ bool Life::make(std::span<const Leg> legs, const motion::Point& from) {
 
 void Life::park() {
     phase_ = Phase::parking;
-    unloads_ = false;
     left_at_ = parked_at_ = head();
     // Before the first motion there is nothing to come away from.
     if (!course_.started.load()) return;
@@ -338,13 +368,7 @@ bool Life::lift() {
     return make(std::span(&leg, 1), parked_at_);
 }
 
-// These two: lifted, and before the path.
-bool Life::load() {
-    const config::FilamentSettings& filament = printer_.filament;
-    const Leg leg{parked_at_, filament.load_mm + filament.purge_mm, filament.speed_mm_s};
-    return make(std::span(&leg, 1), parked_at_);
-}
-
+// Lifted, and before the path.
 void Life::rest_for_filament() {
     awaits_filament_ = false;
     reason_ = ChangeFilament{};
@@ -361,12 +385,11 @@ void Life::hear_of_journal() {
     message_ = error->message;
 }
 
-// A height that is too low prints in the air; one that is too high would drive the nozzle into the part. So it is
-// parked from when it has arrived to well before it leaves, and before the path where it was found.
+// A height that is too low prints in the air; one that is too high would drive the nozzle into the part.
 std::optional<std::int64_t> Life::rest_nm() const {
-    const bool is_found = phase_ == Phase::heating || (phase_ == Phase::returning && !is_to_lift_);
-    const bool is_parked = phase_ == Phase::resting || (phase_ == Phase::parking && unloads_);
-    if (!is_parked && (course_.started.load() || !is_found)) return std::nullopt;
+    const bool stands = phase_ == Phase::unloading || phase_ == Phase::resting ||
+                        (phase_ == Phase::heating && !departs_) || phase_ == Phase::loading;
+    if (!stands) return std::nullopt;
     return std::llround(parked_at_.z * nm_per_mm);
 }
 
@@ -437,15 +460,10 @@ void Life::go_back() {
 // False: it cannot, and the message says why.
 bool Life::leave() {
     if (is_to_lift_) return lift();
-    if (!course_.started.load()) return !is_unloaded_ || awaits_filament_ || load();
+    if (!course_.started.load()) return true;
     const double filament_mm_s = printer_.axes[config::axis_e].max_speed_mm_s;
-    const config::FilamentSettings& filament = printer_.filament;
-    const double load_mm = is_unloaded_ ? filament.load_mm + filament.purge_mm : 0;
-    const double again_mm = is_unloaded_ ? -drawn_back_mm_ : 0;
     const double mm_s = printer_.pause.speed_mm_s;
-    const std::array<Leg, 5> legs{{{parked_at_, load_mm, filament.speed_mm_s},
-                                   {parked_at_, again_mm, filament_mm_s},
-                                   {{left_at_.x, left_at_.y, parked_at_.z}, 0, mm_s},
+    const std::array<Leg, 3> legs{{{{left_at_.x, left_at_.y, parked_at_.z}, 0, mm_s},
                                    {left_at_, 0, mm_s},
                                    {left_at_, drawn_back_mm_, filament_mm_s}}};
     return make(legs, parked_at_);
@@ -458,7 +476,6 @@ void Life::returned() {
         lifted_steps_ = course_.steps();
         parked_at_.z = printer_.start_mm[config::axis_z];
     }
-    if (!awaits_filament_) is_unloaded_ = false;
     if (cancels() || rests_again_) {
         rests_again_ = false;
         return park();
@@ -479,11 +496,13 @@ PrintState Life::state() const {
             return desk_.now().waits ? PrintState::heating : PrintState::printing;
         case Phase::braking:
         case Phase::parking:
+        case Phase::unloading:
             if (cancels()) return PrintState::stopping;
             return goes_on_ ? PrintState::resuming : PrintState::pausing;
         case Phase::resting:
             return PrintState::paused;
         case Phase::heating:
+        case Phase::loading:
         case Phase::returning:
             return rests_again_ ? PrintState::pausing : PrintState::resuming;
         case Phase::over:

@@ -4,6 +4,8 @@
 //
 //     printing -> coming to rest -> going to the park place -> resting -> heating -> coming back -> printing
 //
+// and filament is drawn out and pushed in where it rests.
+//
 // Contract
 //  1. A pause brings the head to rest on its path; then the filament is drawn back, the head lifted and parked. What
 //     resumes goes back the same way. All in all no motor has moved then, but the extruder's by what a change of filament
@@ -20,8 +22,9 @@
 //  7. With a journal, each layer is noted there when the head begins it, where the head is parked, over a crooked bed once a
 //     second where it is in the layer, and how high it came to rest when it was stopped; and of the filament, how far it
 //     is drawn back while the head is away from the path or was stopped, and whether it was drawn out. A journal that
-//     cannot be written is told, and is no reason to stop. At the end of the path there is nothing to resume any more,
-//     and it goes.
+//     cannot be written is told, and is no reason to stop. Before the head leaves the place where it rests, the journal
+//     has on the disk that it does: it never says a height that the head may have gone below. At the end of the path
+//     there is nothing to resume any more, and it goes.
 //  8. A print that resumes after it was cut off begins with heat, then the head is lifted, unless that was done. If the
 //     filament was drawn out it rests then for the next one, which is pushed in before the path begins.
 
@@ -90,8 +93,10 @@ private:
         printing,
         braking,
         parking,
+        unloading,
         resting,
         heating,
+        loading,
         returning,
         over,
     };
@@ -110,7 +115,6 @@ private:
     void brake(bool rests);
     bool leave();
     bool lift();
-    bool load();
     void rest_for_filament();
     void look();
     void note();
@@ -126,6 +130,9 @@ private:
     motion::Point head() const;
     void returned();
     void unload();
+    void load();
+    void loaded();
+    bool may_leave();
     bool make(std::span<const Leg> legs, const motion::Point& from);
     bool can_push() const;
     bool changes_filament() const { return std::holds_alternative<ChangeFilament>(reason_); }
@@ -156,8 +163,8 @@ private:
     bool has_finished_ = false;     // the path
     bool rests_again_ = false;      // as soon as it has returned
     bool goes_on_ = false;          // as soon as it is parked
-    bool unloads_ = false;          // parks no more, while it is `parking`: only filament moves
     bool leaves_ = false;           // the rest, as far as is known
+    bool departs_ = false;          // from its height: that is noted no more
     std::array<bool, config::heater_count> standby_{};
     std::optional<double>
         cold_by_hand_c_;  // what the tool was set to in a rest, if no filament can be pushed then
