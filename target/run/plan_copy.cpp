@@ -91,6 +91,43 @@ void PlanCopy::begin_turn(const motion::Arc& arc, double share, double place_mm)
     place_mm_ = place_mm;
     ahead_mm_ = is_x ? -sine_mm : cosine_mm;
     inward_mm_ = is_x ? -cosine_mm : -sine_mm;
+    reach_rad_ = std::cbrt(std::sqrt(36 * series_mm / std::abs(weight_ * arc.radius_mm)));
+}
+
+// How long the series of a turn holds. Its error is below r h^6 / 720 times the largest sixth derivative of a sine of the
+// angle, which is below (|a'| + 1.57 sqrt|a''| + 1.47 cbrt|a'''|)^6 by the formula of Faa di Bruno. That grows by a factor
+// of 17 at most within the reach, where it is below 0.3 rad; 20 times 36 is 720.
+double PlanCopy::reach_ns(double a1, double a2, double a3) const {
+    constexpr double largest_reach_rad = 0.3;
+    const double rate =
+        std::abs(a1) + 1.57 * std::sqrt(2 * std::abs(a2)) + 1.47 * std::cbrt(6 * std::abs(a3));
+    return std::min(reach_rad_, largest_reach_rad) / rate;
+}
+
+std::int64_t PlanCopy::add_to(Series& c, std::int64_t plan_ns) const {
+    const double d = static_cast<double>(plan_ns + offset_ns_ - origin_ns_) - origin_part_ns_;
+    const double a0 = c_[0] + d * (c_[1] + d * (c_[2] + d * c_[3]));
+    const double a1 = c_[1] + d * (2 * c_[2] + d * 3 * c_[3]);
+    const double a2 = c_[2] + d * 3 * c_[3], a3 = c_[3];
+    if (!turns_) {
+        c[0] += a0, c[1] += a1, c[2] += a2, c[3] += a3;
+        return end_ns_ - offset_ns_;
+    }
+    // The turn from here on, about this place.
+    const auto [sine, versine] = turned(a0);
+    const double cosine = 1 - versine;
+    const double ahead_mm = ahead_mm_ * cosine + inward_mm_ * sine;
+    const double inward_mm = inward_mm_ * cosine - ahead_mm_ * sine;
+    const double a11 = a1 * a1, a12 = a1 * a2, a13 = a1 * a3;
+    c[0] += place_mm_ + ahead_mm_ * sine + inward_mm_ * versine;
+    c[1] += ahead_mm * a1;
+    c[2] += ahead_mm * a2 + inward_mm * (a11 / 2);
+    c[3] += ahead_mm * (a3 - a11 * a1 / 6) + inward_mm * a12;
+    c[4] += ahead_mm * (-a11 * a2 / 2) + inward_mm * (a2 * a2 / 2 + a13 - a11 * a11 / 24);
+    c[5] += ahead_mm * (a11 * a11 * a1 / 120 - (a12 * a2 + a13 * a1) / 2) +
+            inward_mm * (a2 * a3 - a11 * a12 / 6);
+    const double left_ns = static_cast<double>(end_ns_ - offset_ns_ - plan_ns);
+    return plan_ns + static_cast<std::int64_t>(std::min(left_ns, reach_ns(a1, a2, a3)));
 }
 
 double PlanSum::sought_mm(const PlanPieces& pieces, std::int64_t plan_ns) {
@@ -100,8 +137,7 @@ double PlanSum::sought_mm(const PlanPieces& pieces, std::int64_t plan_ns) {
     c_ = {};
     for (PlanCopy& copy : copies_) {
         sum_mm += copy.at_mm(pieces, plan_ns);
-        end_ns_ = std::min(end_ns_, copy.ends_ns());
-        if (end_ns_ > plan_ns) copy.add_to(c_, plan_ns);
+        end_ns_ = std::min(end_ns_, copy.add_to(c_, plan_ns));
     }
     return sum_mm;
 }

@@ -4,11 +4,12 @@
 //
 // Method. It remembers the stretch of the plan in which it was asked last: a phase of a move's profile, on an arc
 // at most largest_turn_rad of it to either side, or a rest. There it is a cubic in time, or a turn by a cubic angle.
+// A sum remembers one polynomial for all its terms: of a turn, Taylor's about the time at which it was asked first.
 //
 // Contract
-//  1. at_mm() is exact to rounding for all times from the begin of the first piece to the end of the last; before
-//     it is where the first begins, after it where the last ends.
-//  2. Times may come in any order; ascending ones are quick. A sum is that of its terms.
+//  1. at_mm() of a copy is exact to rounding for all times from the begin of the first piece to the end of the last;
+//     before it is where the first begins, after it where the last ends.
+//  2. Times may come in any order; ascending ones are quick. A sum is that of its terms, within series_mm for each.
 
 #pragma once
 
@@ -29,6 +30,10 @@ struct PlanPiece {
 };
 using PlanPieces = std::deque<PlanPiece>;
 
+// Millimetres by powers of the nanoseconds since some time.
+using Series = std::array<double, 6>;
+inline constexpr double series_mm = 1e-7;
+
 class PlanCopy {
 public:
     PlanCopy(std::size_t channel, double weight, std::int64_t offset_ns)
@@ -48,16 +53,8 @@ public:
         return turned_mm(value);
     }
 
-    // Until this plan time it is one cubic; of a turn, which is none, where it begins.
-    std::int64_t ends_ns() const { return (turns_ ? begin_ns_ : end_ns_) - offset_ns_; }
-    // Adds its cubic in the nanoseconds since a plan time.
-    void add_to(std::array<double, 4>& c, std::int64_t plan_ns) const {
-        const double d = static_cast<double>(plan_ns + offset_ns_ - origin_ns_) - origin_part_ns_;
-        c[0] += c_[0] + d * (c_[1] + d * (c_[2] + d * c_[3]));
-        c[1] += c_[1] + d * (2 * c_[2] + d * 3 * c_[3]);
-        c[2] += c_[2] + d * 3 * c_[3];
-        c[3] += c_[3];
-    }
+    // After at_mm() of that time: adds its series about it, and says until when that holds.
+    std::int64_t add_to(Series& c, std::int64_t plan_ns) const;
 
 private:
     static constexpr double largest_turn_rad = 0.25;
@@ -66,15 +63,21 @@ private:
         const double t = static_cast<double>(at_ns - origin_ns_) - origin_part_ns_;
         return c_[0] + t * (c_[1] + t * (c_[2] + t * c_[3]));
     }
-    // By the series of sine and 1 - cosine; the first terms left out are 0.25^11 / 11! = 6e-15 of the radius and less.
-    double turned_mm(double a) const {
+    struct Turned {
+        double sine, versine;
+    };
+    // The first terms left out are 0.25^11 / 11! = 6e-15 of the radius and less.
+    static Turned turned(double a) {
         const double q = a * a, q2 = q * q;
-        const double sine =
-            a * ((1 - q * (1. / 6)) + q2 * ((1. / 120 - q * (1. / 5040)) + q2 * (1. / 362880)));
-        const double versine = q * ((1. / 2 - q * (1. / 24)) +
-                                    q2 * ((1. / 720 - q * (1. / 40320)) + q2 * (1. / 3628800)));
+        return {a * ((1 - q * (1. / 6)) + q2 * ((1. / 120 - q * (1. / 5040)) + q2 * (1. / 362880))),
+                q * ((1. / 2 - q * (1. / 24)) +
+                     q2 * ((1. / 720 - q * (1. / 40320)) + q2 * (1. / 3628800)))};
+    }
+    double turned_mm(double a) const {
+        const auto [sine, versine] = turned(a);
         return place_mm_ + ahead_mm_ * sine + inward_mm_ * versine;
     }
+    double reach_ns(double a1, double a2, double a3) const;
     // The stretch from here on.
     void seek(const PlanPieces& pieces, std::int64_t at_ns);
     void begin_phase(const PlanPiece& piece, std::int64_t at_ns);
@@ -90,9 +93,9 @@ private:
     std::array<double, 4> c_{};  // mm, or of a turn rad from its begin
     bool turns_ = false;
     double place_mm_ = 0, ahead_mm_ = 0, inward_mm_ = 0;  // of a turn
+    double reach_rad_ = 0;                                // of its series
 };
 
-// All terms of one sum; where none of them turns they are one cubic, remembered in place of theirs.
 class PlanSum {
 public:
     explicit PlanSum(std::vector<PlanCopy> copies) : copies_(std::move(copies)) {}
@@ -100,7 +103,7 @@ public:
     double at_mm(const PlanPieces& pieces, std::int64_t plan_ns) {
         if (plan_ns < begin_ns_ || plan_ns >= end_ns_) return sought_mm(pieces, plan_ns);
         const auto t = static_cast<double>(plan_ns - begin_ns_);
-        return c_[0] + t * (c_[1] + t * (c_[2] + t * c_[3]));
+        return c_[0] + t * (c_[1] + t * (c_[2] + t * (c_[3] + t * (c_[4] + t * c_[5]))));
     }
 
 private:
@@ -108,7 +111,7 @@ private:
 
     std::vector<PlanCopy> copies_;
     std::int64_t begin_ns_ = 0, end_ns_ = 0;
-    std::array<double, 4> c_{};
+    Series c_{};
 };
 
 }  // namespace lyr::run

@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <random>
 
 #include "target/moves/move_maker.h"
@@ -129,19 +130,36 @@ TEST_CASE("plan copy 1: a plan that goes on is seen to, however it was asked bef
     }
 }
 
-TEST_CASE("plan copy 1, 2: a sum is that of its terms") {
-    const PlanPieces pieces = planned(0);
-    PlanSum sum({{motion::axis_y, 0.3, -9'000'000},
-                 {motion::axis_y, 0.45, 0},
-                 {motion::axis_y, 0.25, 7'654'321}});
-    double worst_mm = 0;
-    for (const std::int64_t at_ns : times_of(pieces)) {
-        const auto term_mm = [&](double weight, std::int64_t offset_ns) {
-            return weight * searched_mm(pieces, motion::axis_y, at_ns + offset_ns);
-        };
-        const double searched =
-            term_mm(0.3, -9'000'000) + term_mm(0.45, 0) + term_mm(0.25, 7'654'321);
-        worst_mm = std::max(worst_mm, std::abs(sum.at_mm(pieces, at_ns) - searched));
+TEST_CASE("plan copy 2: a sum is that of its terms, for times near each other and in any order") {
+    struct Term {
+        double weight;
+        std::int64_t offset_ns;
+    };
+    const std::array<Term, 3> terms{{{0.3, -9'000'000}, {0.45, 0}, {0.25, 7'654'321}}};
+    for (const double jerk_mm_s3 : {0.0, 2e5}) {
+        const PlanPieces pieces = planned(jerk_mm_s3);
+        const std::vector<std::int64_t> far_ns = times_of(pieces);
+        std::vector<std::int64_t> near_ns, shuffled_ns = far_ns;
+        for (std::int64_t at_ns = far_ns.front(); at_ns < far_ns.back(); at_ns += 77'771)
+            near_ns.push_back(at_ns);
+        std::shuffle(shuffled_ns.begin(), shuffled_ns.end(), std::mt19937(3));
+        for (const std::size_t channel : {motion::axis_x, motion::axis_y, motion::axis_e})
+            for (const std::vector<std::int64_t>& times_ns : {far_ns, near_ns, shuffled_ns}) {
+                std::vector<PlanCopy> copies, exact;
+                for (const auto& [weight, offset_ns] : terms)
+                    copies.push_back({channel, weight, offset_ns});
+                exact = copies;
+                PlanSum sum(std::move(copies));
+                double worst_mm = 0;
+                for (const std::int64_t at_ns : times_ns) {
+                    double exact_mm = 0;
+                    for (PlanCopy& copy : exact) exact_mm += copy.at_mm(pieces, at_ns);
+                    worst_mm = std::max(worst_mm, std::abs(sum.at_mm(pieces, at_ns) - exact_mm));
+                }
+                CAPTURE(channel);
+                CAPTURE(jerk_mm_s3);
+                CHECK(worst_mm < terms.size() * series_mm);
+                CHECK((channel != motion::axis_e || worst_mm < 1e-10));
+            }
     }
-    CHECK(worst_mm < 1e-10);
 }
