@@ -65,6 +65,7 @@ void Life::tick(double now_s) {
             rest_for(ChangeFilament{});
         else
             rest_for(Pause{});
+        heeds_file_ = true;
         message_ =
             "the file asks for " + std::string(changes_filament() ? "another filament" : "a pause");
     }
@@ -121,19 +122,26 @@ void Life::rest_for(Command reason) {
     const bool unloads = std::holds_alternative<ChangeFilament>(reason) && !is_unloaded_;
     // One that rests does so already, and one that is about to go on rests again.
     if (phase_ == Phase::heating) phase_ = Phase::resting, rest_since_s_ = now_s_;
-    rests_again_ = phase_ == Phase::loading || phase_ == Phase::returning;
+    rests_again_ =
+        phase_ == Phase::lifting || phase_ == Phase::loading || phase_ == Phase::returning;
     goes_on_ = false;
     reason_ = reason;
     message_.clear();
-    if (cancels()) {
-        // What is left to do needs no heat but that which is there.
-        standby_.fill(true);
-        desk_.set_standby(standby_);
-    }
+    // What is left to do needs no heat but that which is there.
+    if (cancels() && !moves_filament()) drop_heat();
     if (phase_ == Phase::resting && unloads) unload();
     if (phase_ != Phase::printing) return;
     left_since_s_ = now_s_;
     phase_ = Phase::braking;
+}
+
+bool Life::moves_filament() const {
+    return phase_ == Phase::unloading || phase_ == Phase::loading || phase_ == Phase::returning;
+}
+
+void Life::drop_heat() {
+    standby_.fill(true);
+    desk_.set_standby(standby_);
 }
 
 // A pause that has not come to rest before the end of the path comes too late.
@@ -167,16 +175,24 @@ void Life::load() {
         {{parked_at_, filament.load_mm + filament.purge_mm, filament.speed_mm_s},
          {parked_at_, -drawn_back_mm_, again_mm_s}}};
     phase_ = Phase::loading;
-    if (make(legs, parked_at_)) return;
-    phase_ = Phase::resting;
-    rest_since_s_ = now_s_;
+    if (!make(legs, parked_at_)) rest_here();
 }
 
 void Life::loaded() {
     is_unloaded_ = false;
+    heat_again();
+}
+
+// One step of going on is done, unless it was to be the last.
+void Life::heat_again() {
     phase_ = Phase::heating;
     heating_since_s_.reset();
     if (cancels() || std::exchange(rests_again_, false)) parked();
+}
+
+void Life::rest_here() {
+    phase_ = Phase::resting;
+    rest_since_s_ = now_s_;
 }
 
 void Life::resume() {
@@ -191,6 +207,8 @@ void Life::resume() {
         return;
     }
     if (phase_ != Phase::resting) return refuse(Resume{}, "the print does not rest");
+    if (lacks_filament && lacks_filament())
+        return refuse(Resume{}, "the filament sensor says that there is none: put it in first");
     if (cold_by_hand_c_)
         return refuse(
             Resume{},
@@ -205,19 +223,31 @@ void Life::resume() {
 }
 
 void Life::wait_for_heat() {
-    if (desk_.settled()) {
-        if (is_unloaded_ && !awaits_filament_) return load();
-        if (may_leave()) return go_back();
-    }
+    if (desk_.settled()) heated();
+    if (phase_ != Phase::heating) return;
     if (!heating_since_s_) heating_since_s_ = now_s_;
     if (now_s_ - *heating_since_s_ < longest_wait_s) return;
     // What has not come by then never will, and nobody may be there.
-    message_ = std::string(departs_ ? "the journal's disk has not answered"
-                                    : "the heaters have not reached their targets") +
-               " within an hour, and the heaters are off; the print rests";
+    message_ = std::string(desk_.settled() ? "the journal's disk has not answered"
+                                           : "the heaters have not reached their targets") +
+               " within an hour, the heaters are off, and the print rests";
     phase_ = Phase::resting;
     rest_since_s_ = now_s_ - std::max(printer_.pause.tool_off_s, printer_.pause.bed_off_s);
     rest();
+}
+
+// What comes next on the way back to the path.
+void Life::heated() {
+    if (is_to_lift_) return lift();
+    if (awaits_filament_) return rest_for_filament();
+    if ((is_unloaded_ || drawn_back_mm_ > 0) && !can_push()) {
+        message_ =
+            formatted("the tool is too cold to push filament: set it to %g °C or more, then resume",
+                      printer_.heaters[config::heater_tool]->min_extrude_c);
+        return rest_here();
+    }
+    if (is_unloaded_) return load();
+    if (may_leave()) go_back();
 }
 
 // The journal's thread tells what it has written a tick later at the earliest.
@@ -246,6 +276,7 @@ void Life::advance() {
     if (ends && rests && (phase_ == Phase::printing || phase_ == Phase::braking)) return finish();
     if (phase_ == Phase::braking) return brake(rests);
     if ((phase_ == Phase::parking || phase_ == Phase::unloading) && !travels) return parked();
+    if (phase_ == Phase::lifting && !travels) return lifted();
     if (phase_ == Phase::loading && !travels) return loaded();
     if (phase_ == Phase::resting) return rest();
     if (phase_ == Phase::heating) return wait_for_heat();
@@ -284,6 +315,7 @@ bool Life::make(std::span<const Leg> legs, const motion::Point& from) {
 
 void Life::park() {
     phase_ = Phase::parking;
+    if (cancels()) drop_heat();
     left_at_ = parked_at_ = head();
     // Before the first motion there is nothing to come away from.
     if (!course_.started.load()) return;
@@ -314,7 +346,9 @@ void Life::parked() {
     }
     if (std::exchange(goes_on_, false)) resume();
     if (!cancels()) return;
-    ended_by_ = "cancelled; the head is parked";
+    drop_heat();
+    const bool stopped = control_.stop_requests().load() != 0;
+    ended_by_ = stopped ? "cancelled, and stopped" : "cancelled; the head is parked";
     phase_ = Phase::over;
     ++control_.stop_requests();
 }
@@ -340,14 +374,6 @@ motion::Point Life::head() const {
     return head_at(printer_, steps);
 }
 
-void Life::keep_journal(JournalWriter* journal, const FileIdentity& identity) {
-    journal_ = journal;
-    noted_ = {identity, identity_of(printer_), layer_,      print_.layers, before_ns_, rest_nm(),
-              {},       drawn_back_um(),       is_unloaded_};
-    // What an earlier print left there must not be resumed any more.
-    if (journal_) journal_->post(noted_);
-}
-
 void Life::begin_with(const Resumption& resumption, bool is_lifted) {
     for (const format::HeaterTarget& target : resumption.state.temperatures)
         if (const auto heater = heater_number(target.heater))
@@ -359,86 +385,30 @@ void Life::begin_with(const Resumption& resumption, bool is_lifted) {
     before_ns_ = resumption.entry.time_ns;
     drawn_back_on_path_mm_ = resumption.drawn_back_mm;
     is_unloaded_ = awaits_filament_ = resumption.entry.is_unloaded;
+    resumes_ = true;
     course_.wanted_pace.store(0);
     phase_ = Phase::heating;
 }
 
-bool Life::lift() {
+void Life::lift() {
     const Leg leg{{parked_at_.x, parked_at_.y, printer_.start_mm[2]}, 0, printer_.pause.speed_mm_s};
-    return make(std::span(&leg, 1), parked_at_);
+    phase_ = Phase::lifting;
+    if (!make(std::span(&leg, 1), parked_at_)) rest_here();
+}
+
+void Life::lifted() {
+    is_to_lift_ = false;
+    lifted_steps_ = course_.steps();
+    parked_at_.z = printer_.start_mm[config::axis_z];
+    heat_again();
 }
 
 // Lifted, and before the path.
 void Life::rest_for_filament() {
     awaits_filament_ = false;
     reason_ = ChangeFilament{};
-    rest_since_s_ = now_s_;
-    phase_ = Phase::resting;
+    rest_here();
     message_ = "the filament was drawn out when the print was cut off: put it in, then resume";
-}
-
-void Life::hear_of_journal() {
-    const std::optional<Diagnostic> error = journal_ ? journal_->take_error() : std::nullopt;
-    if (!error) return;
-    journal_error_ = error;
-    journal_error_->severity = Severity::warning;
-    message_ = error->message;
-}
-
-// A height that is too low prints in the air; one that is too high would drive the nozzle into the part.
-std::optional<std::int64_t> Life::rest_nm() const {
-    const bool stands = phase_ == Phase::unloading || phase_ == Phase::resting ||
-                        (phase_ == Phase::heating && !departs_) || phase_ == Phase::loading;
-    if (!stands) return std::nullopt;
-    return std::llround(parked_at_.z * nm_per_mm);
-}
-
-bool Life::is_on_path() const {
-    return course_.started.load() && (phase_ == Phase::printing || phase_ == Phase::braking);
-}
-
-std::int32_t Life::drawn_back_um() const {
-    return static_cast<std::int32_t>(
-        std::lround((drawn_back_on_path_mm_ + drawn_back_mm_) * um_per_mm));
-}
-
-void Life::note() {
-    if (!journal_) return;
-    hear_of_journal();
-    JournalEntry entry = noted_;
-    entry.layer = layer_;
-    entry.rest_nm = rest_nm();
-    // On the path it changes too often to be kept, and is mostly not drawn back at all.
-    entry.drawn_back_um = is_on_path() ? 0 : drawn_back_um();
-    entry.is_unloaded = is_unloaded_;
-    // Over a crooked bed the height of the head depends on its place, which is worth a write now and then.
-    constexpr double place_interval_s = 1;
-    if (!printer_.mesh.heights_mm.empty() && now_s_ - noted_s_ >= place_interval_s) {
-        const motion::Point on_path = head_at(printer_, course_.steps_on_path());
-        entry.place_um = {static_cast<std::int32_t>(std::lround(on_path.x * um_per_mm)),
-                          static_cast<std::int32_t>(std::lround(on_path.y * um_per_mm))};
-    }
-    if (entry.rest_nm) entry.place_um.reset();
-    if (entry != noted_) post(entry);
-}
-
-void Life::post(const JournalEntry& entry) {
-    noted_ = entry;
-    noted_.time_ns = before_ns_ + course_.time_ns.load();
-    noted_s_ = now_s_;
-    journal_->post(noted_);
-}
-
-void Life::note_rest() {
-    if (!journal_ || !course_.started.load()) return;
-    look();
-    JournalEntry entry = noted_;
-    entry.layer = layer_;
-    entry.rest_nm = std::llround(head().z * nm_per_mm);
-    entry.drawn_back_um = drawn_back_um();
-    entry.is_unloaded = is_unloaded_;
-    entry.place_um.reset();
-    post(entry);
 }
 
 void Life::press(std::size_t input) {
@@ -450,16 +420,12 @@ void Life::press(std::size_t input) {
 }
 
 void Life::go_back() {
-    if (cancels()) return parked();
     phase_ = Phase::returning;
-    if (leave()) return;
-    phase_ = Phase::resting;
-    rest_since_s_ = now_s_;
+    if (!leave()) rest_here();
 }
 
 // False: it cannot, and the message says why.
 bool Life::leave() {
-    if (is_to_lift_) return lift();
     if (!course_.started.load()) return true;
     const double filament_mm_s = printer_.axes[config::axis_e].max_speed_mm_s;
     const double mm_s = printer_.pause.speed_mm_s;
@@ -471,77 +437,15 @@ bool Life::leave() {
 
 void Life::returned() {
     drawn_back_mm_ = 0;
-    if (is_to_lift_) {
-        is_to_lift_ = false;
-        lifted_steps_ = course_.steps();
-        parked_at_.z = printer_.start_mm[config::axis_z];
-    }
     if (cancels() || rests_again_) {
         rests_again_ = false;
         return park();
     }
-    if (awaits_filament_) return rest_for_filament();
     phase_ = Phase::printing;
     paused_s_ += now_s_ - left_since_s_;
-    desk_.end_pause();
+    if (std::exchange(heeds_file_, false)) desk_.end_pause();
     leaves_ = true;
     course_.wanted_pace.store(pace());
-}
-
-PrintState Life::state() const {
-    if (control_.stop_requests().load() != 0) return PrintState::stopping;
-    if (has_finished_) return PrintState::printing;
-    switch (phase_) {
-        case Phase::printing:
-            return desk_.now().waits ? PrintState::heating : PrintState::printing;
-        case Phase::braking:
-        case Phase::parking:
-        case Phase::unloading:
-            if (cancels()) return PrintState::stopping;
-            return goes_on_ ? PrintState::resuming : PrintState::pausing;
-        case Phase::resting:
-            return PrintState::paused;
-        case Phase::heating:
-        case Phase::loading:
-        case Phase::returning:
-            return rests_again_ ? PrintState::pausing : PrintState::resuming;
-        case Phase::over:
-            break;
-    }
-    return PrintState::stopping;
-}
-
-void Life::publish(PrintState state, bool is_position_known) {
-    const motion::Point head = this->head();
-    const HeatNow heat = desk_.now();
-    PrintStatus status;
-    status.state = state;
-    status.message = message_;
-    status.file = print_.file;
-    status.layer = layer_;
-    status.layers = print_.layers;
-    status.position_mm = {head.x, head.y, head.z};
-    status.is_position_known = is_position_known;
-    status.time_s = time_s();
-    status.elapsed_s = now_s_ - begun_s_.value_or(now_s_);
-    status.estimated_s = print_.estimated_s;
-    status.heaters = heat.heaters;
-    status.fan = heat.fan;
-    status.speed_factor = speed_factor_;
-    status.filament_mm = static_cast<double>(course_.steps_on_path()[config::axis_e]) /
-                         printer_.axes[config::axis_e].steps_per_mm;
-    control_.publish(std::move(status));
-}
-
-void Life::end(const Status& result, bool is_position_known) {
-    phase_ = Phase::over;
-    hear_of_journal();
-    if (!result) message_ = result.error().message;
-    const bool is_stopped = !result && result.error().status == ExitStatus::stopped;
-    publish(result       ? PrintState::done
-            : is_stopped ? PrintState::stopped
-                         : PrintState::failed,
-            is_position_known);
 }
 
 }  // namespace lyr::run

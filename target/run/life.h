@@ -4,7 +4,7 @@
 //
 //     printing -> coming to rest -> going to the park place -> resting -> heating -> coming back -> printing
 //
-// and filament is drawn out and pushed in where it rests.
+// and filament is drawn out and pushed in where it rests, each once the tool is warm.
 //
 // Contract
 //  1. A pause brings the head to rest on its path; then the filament is drawn back, the head lifted and parked. What
@@ -15,8 +15,8 @@
 //     to less in a pause must be set to more before it. Heat that has not come within an hour is taken away, and the print
 //     rests on.
 //  3. A pause that lasts for longer than printer.toml says lets tool, bed and chamber go cold.
-//  4. A cancel takes all heat away, parks too, and ends by a request to stop; an emergency stop does so at once, and calls
-//     `cut`. At the end of the path the head parks as for a pause, at the heat that the file left; commands come too late then.
+//  4. A cancel takes all heat away once no filament is under way, parks too, and ends by a request to stop; an emergency
+//     stop does so at once, and calls `cut`. At the end of the path the head parks as for a pause, at the heat that the file left; commands come too late then.
 //  5. What cannot be done as things are is refused, and status().message says why.
 //  6. Commands take effect within the next tick; a speed above that of the file does with moves that are not planned yet.
 //  7. With a journal, each layer is noted there when the head begins it, where the head is parked, over a crooked bed once a
@@ -64,6 +64,8 @@ public:
     std::function<void()> cut;
     // May be empty: hears what status().message says of a command that is refused.
     std::function<void(const std::string& why)> hear_of_refusal;
+    // May be empty: a sensor says that there is no filament, and nothing is resumed.
+    std::function<bool()> lacks_filament;
     // Both may be none. `identity` is that of the file.
     void keep_journal(JournalWriter* journal, const FileIdentity& identity);
     // Before the first tick; the printer's start is where the head is after the lift.
@@ -96,6 +98,7 @@ private:
         unloading,
         resting,
         heating,
+        lifting,
         loading,
         returning,
         over,
@@ -114,7 +117,8 @@ private:
     void let_cool(double rested_s);
     void brake(bool rests);
     bool leave();
-    bool lift();
+    void lift();
+    void lifted();
     void rest_for_filament();
     void look();
     void note();
@@ -132,6 +136,11 @@ private:
     void unload();
     void load();
     void loaded();
+    void heat_again();
+    void rest_here();
+    void drop_heat();
+    void heated();
+    bool moves_filament() const;
     bool may_leave();
     bool make(std::span<const Leg> legs, const motion::Point& from);
     bool can_push() const;
@@ -164,6 +173,8 @@ private:
     bool rests_again_ = false;      // as soon as it has returned
     bool goes_on_ = false;          // as soon as it is parked
     bool leaves_ = false;           // the rest, as far as is known
+    bool heeds_file_ = false;       // rests since the path waits in a pause of its own
+    bool resumes_ = false;          // a print that was cut off
     bool departs_ = false;          // from its height: that is noted no more
     std::array<bool, config::heater_count> standby_{};
     std::optional<double>

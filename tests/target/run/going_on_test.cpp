@@ -1,0 +1,197 @@
+// What life.h (1, 2, 4, 7) says of what comes between a rest and the path: tick by tick.
+
+#include <doctest/doctest.h>
+
+#include "target/run/resumed_life.h"
+
+using namespace lyr;
+using namespace lyr::run;
+using namespace lyr::tests;
+
+namespace {
+
+// All heat is there, and the tool is this warm.
+PrintStatus heated_to(Resumed& print, double time_s, double tool_c) {
+    PrintStatus status;
+    for (int i = 0; i < 3; ++i) {
+        print.desk.take();
+        HeatNow now;
+        now.reached = true;
+        now.heaters[config::heater_tool] = {true, tool_c, tool_c};
+        print.desk.publish(now);
+        status = print.after(time_s);
+        while (!print.writer->is_idle()) std::this_thread::yield();
+    }
+    return status;
+}
+
+bool is_cold(Resumed& print) {
+    const HeatWish wish = print.desk.take();
+    return wish.standby[config::heater_tool] && wish.standby[config::heater_bed];
+}
+
+// Rests at the park place, the filament drawn out.
+void unload(Resumed& print) {
+    begin_path(print);
+    pause_path(print);
+    print.after(6, ChangeFilament{});
+    print.end_trip();
+    REQUIRE(print.after(7).state == PrintState::paused);
+}
+
+}  // namespace
+
+TEST_CASE("life 4: a cancel while filament was pushed in let the tool go cold and pushed on") {
+    Resumed print(true, "cancel_loading");
+    unload(print);
+    print.after(8, Resume{});
+    print.heated(9);
+    REQUIRE(print.course.trip.load() != nullptr);
+    CHECK(print.after(10, Cancel{}).state == PrintState::stopping);
+    CHECK_FALSE(is_cold(print));
+    // No way back to the part.
+    CHECK(print.end_trip()[config::axis_z] == 0);
+    print.after(11);
+    CHECK(print.course.trip.load() == nullptr);
+    CHECK(is_cold(print));
+    CHECK(print.life.is_cancelled());
+    CHECK(print.life.ended_by() == "cancelled; the head is parked");
+}
+
+TEST_CASE("life 4: a cancel on the way back lets the heaters go once the filament is pushed") {
+    Resumed print(true, "cancel_returning");
+    begin_path(print);
+    pause_path(print);
+    print.after(6, Resume{});
+    print.heated(7);
+    REQUIRE(print.course.trip.load() != nullptr);
+    CHECK(print.after(8, Cancel{}).state == PrintState::stopping);
+    CHECK_FALSE(is_cold(print));
+    CHECK(print.end_trip()[config::axis_z] < 0);
+    CHECK(print.after(9).state == PrintState::stopping);
+    CHECK(is_cold(print));
+    CHECK(print.end_trip()[config::axis_z] > 0);
+    print.after(10);
+    CHECK(print.life.ended_by() == "cancelled; the head is parked");
+}
+
+TEST_CASE("life 4: a cancel that a signal cut short said that the head is parked") {
+    Resumed print(true, "cancel_cut");
+    begin_path(print);
+    print.after(3, Cancel{});
+    print.course.at_rest.store(true);
+    print.after(4);
+    REQUIRE(print.course.trip.load() != nullptr);
+    ++print.control.stop_requests();
+    print.course.trip.store(nullptr);
+    print.after(5);
+    CHECK(print.life.ended_by() == "cancelled, and stopped");
+}
+
+TEST_CASE("life 2: filament was pushed with a tool that the file had let go cold") {
+    for (const bool is_changed : {false, true}) {
+        CAPTURE(is_changed);
+        Resumed print(true, "cold_load");
+        if (is_changed) {
+            unload(print);
+        } else {
+            begin_path(print);
+            pause_path(print);
+        }
+        print.printer.heaters[config::heater_tool] =
+            config::generic_printer().heaters[config::heater_tool];
+        print.after(8, Resume{});
+        const PrintStatus cold = heated_to(print, 9, 90);
+        CHECK(cold.state == PrintState::paused);
+        CHECK(cold.message.find("too cold to push filament") != std::string::npos);
+        CHECK(print.course.trip.load() == nullptr);
+        print.after(10, SetTemperature{config::heater_tool, 210});
+        print.after(11, Resume{});
+        CHECK(heated_to(print, 12, 210).state == PrintState::resuming);
+        CHECK(print.course.trip.load() != nullptr);
+    }
+}
+
+TEST_CASE(
+    "life 1: a pause that the file asks for was skipped when a user's pause came just before") {
+    Resumed print(true, "swallowed");
+    begin_path(print);
+    print.after(3, Pause{});
+    HeatNow waits;
+    waits.reached = true;
+    waits.pause = format::PauseReason::filament_change;
+    print.desk.publish(waits);
+    print.course.at_rest.store(true);
+    print.after(4);
+    print.end_trip();
+    print.after(5);
+    print.after(6, Resume{});
+    const auto settle = [&](double time_s) {
+        PrintStatus status;
+        for (int i = 0; i < 3; ++i) {
+            print.desk.take();
+            print.desk.publish(waits);
+            status = print.after(time_s);
+            while (!print.writer->is_idle()) std::this_thread::yield();
+        }
+        return status;
+    };
+    settle(7);
+    print.end_trip();
+    CHECK(print.after(8).state == PrintState::printing);
+    CHECK_FALSE(print.desk.take().pause_is_over);
+    print.course.at_rest.store(false);
+    const PrintStatus asked = print.after(9);
+    CHECK(asked.state == PrintState::pausing);
+    CHECK(asked.message.find("another filament") != std::string::npos);
+    print.course.at_rest.store(true);
+    print.after(10);
+    print.end_trip();
+    print.after(11);  // draws it out
+    print.end_trip();
+    print.after(12);
+    print.after(13, Resume{});
+    settle(14);  // pushes the next one in
+    print.end_trip();
+    settle(15);  // goes back
+    print.end_trip();
+    CHECK(print.after(16).state == PrintState::printing);
+    CHECK(print.desk.take().pause_is_over);
+}
+
+TEST_CASE("life: a print was resumed while its sensor said that there is no filament") {
+    Resumed print(true, "no_filament");
+    bool is_there = false;
+    print.life.lacks_filament = [&] { return !is_there; };
+    unload(print);
+    const PrintStatus refused = print.after(8, Resume{});
+    CHECK(refused.state == PrintState::paused);
+    CHECK(refused.message.find("there is none") != std::string::npos);
+    is_there = true;
+    CHECK(print.after(9, Resume{}).state == PrintState::resuming);
+}
+
+TEST_CASE("life 7: a resumption that was stopped while it lifted took the layer for its height") {
+    Resumed print(false, "stopped_lifting");
+    print.heated(1);
+    REQUIRE(print.course.trip.load() != nullptr);
+    // Cut off here, it is as low as it was found.
+    while (!print.writer->is_idle()) std::this_thread::yield();
+    const auto cut = read_journal(print.journal);
+    REQUIRE((cut.ok() && *cut));
+    CHECK((*cut)->rest_nm == 6'500'000);
+    // Stopped here, it is half a millimetre higher.
+    print.course.trip_steps[config::axis_z] += 200;
+    print.course.trip.store(nullptr);
+    print.life.note_rest();
+    CHECK(print.noted().rest_nm == 7'000'000);
+}
+
+TEST_CASE("life 7: a resumption that was stopped once it was lifted knows how high") {
+    Resumed print(false, "stopped_lifted");
+    print.heated(1);
+    print.end_trip();
+    print.after(2);
+    print.life.note_rest();
+    CHECK(print.noted().rest_nm == 11'500'000);
+}
