@@ -37,6 +37,8 @@ public:
 
     std::string_view unsent() const { return std::string_view(out_).substr(sent_); }
     void sent(std::size_t bytes);
+    // Of answers, sent or not.
+    std::size_t held_bytes() const { return out_.size(); }
 
 private:
     std::string in_, out_;

@@ -24,6 +24,7 @@ struct Input {
     calls::WatchedHandle line;
     std::string text;  // for messages
     bool active_low = false;
+    bool may_chatter = false;
 };
 
 Diagnostic lost(const Input& input) {
@@ -81,13 +82,19 @@ private:
             calls::take(*input.line, std::span(kept).first(std::min(edges.size(), kept.size())));
         if (count < 0) return lost(input);
         // The kernel drops what comes after these.
-        if (count == static_cast<int>(kept.size()))
+        const bool overflows = count == static_cast<int>(kept.size());
+        if (overflows && !input.may_chatter)
             return machine_error(input.text +
                                  ": edges come faster than they can be taken; is the "
                                  "line connected, and has it a pull resistor?");
         for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
             edges[i] = {kept[i].time_ns, static_cast<std::uint8_t>(index),
                         kept[i].level != input.active_low};
+        if (overflows) {
+            const std::optional<bool> level = calls::level(*input.line);
+            if (!level) return lost(input);
+            edges[kept.size() - 1].active = *level != input.active_low;
+        }
         return static_cast<std::size_t>(count);
     }
 
@@ -105,7 +112,8 @@ Result<Input> open_input(const InputRequest& request) {
     if (!line)
         return machine_error("cannot watch " + text + ": " + std::strerror(errno) +
                              (request.pull == Pull::as_is ? "" : "; can the chip set its pull?"));
-    return Input{std::move(*chip), std::move(line), text, request.line.active_low};
+    return Input{std::move(*chip), std::move(line), text, request.line.active_low,
+                 request.may_chatter};
 }
 
 }  // namespace

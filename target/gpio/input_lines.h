@@ -12,7 +12,8 @@
 //     it runs may be left for the next call.
 //  4. wait_ns() returns true as soon as there is something to collect, and false after so long without; 0 asks.
 //  5. A failure (a chip that was unplugged) returns its diagnostic, status machine. Edges that the kernel had to drop
-//     because nobody collected them in time are a failure too.
+//     because nobody collected them in time are a failure too, unless the line may chatter: then the last edge given is
+//     as the line is now.
 //  6. Nothing but a failure allocates memory.
 //  7. One thread at a time uses it. Lines are handed back by the destructor.
 
@@ -31,6 +32,7 @@ enum class Pull : std::uint8_t { as_is, up, down, none };
 struct InputRequest {
     LineRequest line;
     Pull pull = Pull::as_is;
+    bool may_chatter = false;
 };
 
 struct InputEdge {

@@ -125,13 +125,18 @@ AxisSet homed_before_print(const config::Printer& printer, bool resumes) {
     return axes;
 }
 
-Status home_before_print(const config::Printer& printer,
-                         const std::optional<run::Resumption>& resumption, gpio::GpioChip& chip,
-                         gpio::Clock& clock, const run::StopSource& stop) {
+run::Before home_before_print(const config::Printer& printer,
+                              const std::optional<run::Resumption>& resumption,
+                              gpio::GpioChip& chip, gpio::Clock& clock,
+                              const run::StopSource& stop) {
     const Result<std::unique_ptr<gpio::InputLines>> inputs = open_inputs(printer);
-    if (!inputs) return inputs.error();
+    if (!inputs) return Status(inputs.error());
     Mover mover(printer, chip, clock, inputs->get(), stop);
-    return home_before_print(mover, printer, resumption);
+    Status homed = home_before_print(mover, printer, resumption);
+    // A delta homes z, and asks for no height.
+    if (printer.kinematics == config::Kinematics::delta) return homed;
+    return {std::move(homed), static_cast<double>(mover.counts()[config::axis_z]) /
+                                  printer.axes[config::axis_z].steps_per_mm};
 }
 
 Status home_before_print(Mover& mover, const config::Printer& printer,

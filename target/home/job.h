@@ -16,7 +16,7 @@
 #include <string>
 
 #include "target/home/homing.h"
-#include "target/run/resumption.h"
+#include "target/run/print.h"
 #include "target/thermal/faults.h"
 
 namespace lyr::home {
@@ -45,9 +45,10 @@ Result<Report> home(const Job& job, AxisSet axes, const std::optional<motion::Po
 
 // What a print on this printer begins with homing; none: with nothing.
 AxisSet homed_before_print(const config::Printer& printer, bool resumes);
-Status home_before_print(const config::Printer& printer,
-                         const std::optional<run::Resumption>& resumption, gpio::GpioChip& chip,
-                         gpio::Clock& clock, const run::StopSource& stop);
+run::Before home_before_print(const config::Printer& printer,
+                              const std::optional<run::Resumption>& resumption,
+                              gpio::GpioChip& chip, gpio::Clock& clock,
+                              const run::StopSource& stop);
 Status home_before_print(Mover& mover, const config::Printer& printer,
                          const std::optional<run::Resumption>& resumption);
 

@@ -47,6 +47,8 @@ public:
                       Contacts watched = {});
     Result<Contacts> touched();
     std::int64_t now_ns() const { return clock_.now_ns(); }
+    // All in all.
+    const motion::StepCounts& counts() const { return tally_.counts(); }
 
 private:
     unsigned asked();

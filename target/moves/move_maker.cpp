@@ -97,13 +97,14 @@ void MoveMaker::begin_layer(const format::LayerStart& layer, const format::Layer
     travel_acceleration_mm_s2_ = state.travel_acceleration_mm_s2;
     retract_speed_mm_s_ = speed_or(state.retract_speed_mm_s, fastest_extruder_mm_s_);
     unretract_speed_mm_s_ = speed_or(state.unretract_speed_mm_s, retract_speed_mm_s_);
-    layer_ = layer.index + 1;
-    draw_back(state.retracted_mm);
     const motion::Point start = position(layer.start);
-    if (start.z > at_.z)
-        travel_to({at_.x, at_.y, start.z});
-    else
-        travel_to({start.x, start.y, at_.z});
+    // A head that is still below the layer is not in it yet.
+    const bool rises = start.z > at_.z;
+    if (!rises || layer_ == 0) layer_ = layer.index + 1;
+    draw_back(state.retracted_mm);
+    travel_to(rises ? motion::Point{at_.x, at_.y, start.z}
+                    : motion::Point{start.x, start.y, at_.z});
+    layer_ = layer.index + 1;
     travel_to(start);
 }
 

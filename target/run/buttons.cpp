@@ -14,6 +14,8 @@ std::vector<gpio::InputRequest> input_requests(const config::Printer& printer) {
         const std::optional<config::Pin>& pin = printer.inputs[i];
         if (!pin) continue;
         requests.push_back(input_request("input." + std::string(config::input_names[i]), *pin));
+        // A worn button is no reason to end a print; an emergency line that cannot be read is.
+        requests.back().may_chatter = i != config::input_emergency;
     }
     return requests;
 }
@@ -49,6 +51,12 @@ Result<std::vector<std::size_t>> Buttons::pressed(std::int64_t now_ns) {
         if (const auto change = input.debounce.settled(now_ns); change && change->active)
             pressed.push_back(input.number);
     return pressed;
+}
+
+bool Buttons::is_active(std::size_t number) const {
+    return std::any_of(inputs_.begin(), inputs_.end(), [number](const Input& input) {
+        return input.number == number && input.debounce.active();
+    });
 }
 
 Result<std::optional<Buttons>> open_buttons(const config::Printer& printer) {

@@ -27,6 +27,8 @@ public:
 
     // Of config's InputNumber.
     Result<std::vector<std::size_t>> pressed(std::int64_t now_ns);
+    // As of the last call of pressed().
+    bool is_active(std::size_t number) const;
 
 private:
     struct Input {

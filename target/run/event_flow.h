@@ -3,8 +3,8 @@
 //
 // Contract
 //  1. put() waits for as long as the ring is full, and no longer than until `finished`.
-//  2. drain() begins when the ring is full or holds all there will be. Events come out a few at a time, so that there is
-//     room again early.
+//  2. drain() begins when the ring is full or holds all there will be; one that is not within the time of 3 is dry. Events
+//     come out a few at a time, so that there is room again early.
 //  3. A ring that has run dry is waited for, and what comes late by that is late as any other event (executor.h, 2 and 4).
 //     Where a stop was asked for, drain() ends after a tenth of a second of that, and at once if it was twice; in any case
 //     after some seconds, and ran_dry() is true then: heat must not stay on a head that stands.
@@ -41,16 +41,14 @@ public:
     template <typename Execute>
     Result<bool> drain(const Execute& execute) {
         constexpr std::size_t batch = 64;
-        while (!filled_.load() && !stops()) nap();
+        for (int naps = 0; !filled_.load() && !stops(); nap())
+            if (++naps > most_dry_naps_) return dry();
         for (int naps = 0; !ring_.ended();) {
             std::span<const LineEvent> events = ring_.view();
             if (events.empty()) {
                 ++naps;
                 if (stops() && (naps > most_naps || stop_requests_.load() > 1)) return false;
-                if (naps > most_dry_naps_) {
-                    ran_dry_ = true;
-                    return false;
-                }
+                if (naps > most_dry_naps_) return dry();
                 nap();
                 continue;
             }
@@ -68,6 +66,10 @@ public:
     static Diagnostic dry_error();
 
 private:
+    bool dry() {
+        ran_dry_ = true;
+        return false;
+    }
     bool stops() const { return stop_requests_.load() != 0; }
     static constexpr int most_naps = 100'000 / nap_us;
     static void nap();

@@ -4,6 +4,7 @@
 
 #include "target/run/print.h"
 
+#include <cmath>
 #include <cstdio>
 #include <mutex>
 #include <optional>
@@ -141,9 +142,9 @@ void look_after(const Watched& watched, double now_s) {
 }
 
 // What is to be done before the path, and whether that may begin.
-Status open(const Watched& watched, const PrintJob& job, const Inspection& inspection,
+Before open(const Watched& watched, const PrintJob& job, const Inspection& inspection,
             gpio::GpioChip& chip, gpio::Clock& clock) {
-    if (!job.before) return Done{};
+    if (!job.before) return {};
     Shared& shared = watched.shared;
     PrintStatus status = shared.control.status();
     status.layers = inspection.totals.layers;
@@ -151,19 +152,31 @@ Status open(const Watched& watched, const PrintJob& job, const Inspection& inspe
     status.time_s = watched.life.time_s();
     Opening opening(shared.control, shared.desk, watched.signals, std::move(status),
                     [&](double now_s) { look_after(watched, now_s); });
-    const Status ready = job.before(chip, clock, [&] { return opening.asked(); });
+    const Before before = job.before(chip, clock, [&] { return opening.asked(); });
     (void)opening.asked();
-    if (shared.stop_requests.load() == 0) return ready;
+    if (shared.stop_requests.load() == 0) return before;
     const bool cancelled = shared.control.ends();
     // Serves an emergency stop.
     watched.life.tick(heat_time_s());
-    if (const auto trip = shared.trip()) return diagnostic_of(*trip);
-    return Diagnostic{
-        Severity::error,
-        ExitStatus::stopped,
-        watched.life.ended_by().value_or(cancelled ? "cancelled" : "stopped on request") +
-            "; before the path began, all lines are released",
-        {}};
+    if (const auto trip = shared.trip()) return {diagnostic_of(*trip), before.risen_mm};
+    return {Diagnostic{
+                Severity::error,
+                ExitStatus::stopped,
+                watched.life.ended_by().value_or(cancelled ? "cancelled" : "stopped on request") +
+                    "; before the path began, all lines are released",
+                {}},
+            before.risen_mm};
+}
+
+// Of a resumption that ends before its path.
+void keep_height(const Resumption& resumption, double risen_mm, bool is_cancelled,
+                 Journal& journal) {
+    if (is_cancelled) return journal.remove();
+    JournalEntry entry = resumption.entry;
+    entry.rest_nm = std::llround((resumption.stopped_z_mm + risen_mm) * nm_per_mm);
+    entry.place_um.reset();
+    // What went wrong before is the message.
+    if (risen_mm != 0) (void)journal.write(entry);
 }
 
 // Until the real-time thread has ended.
@@ -337,6 +350,7 @@ struct Around {
 Result<PrintReport> run(const PrintJob& job, Prepared& prepared, gpio::GpioChip& chip,
                         gpio::Clock& clock, Around around) {
     Heating* const heating = around.heating;
+    Buttons* const buttons = around.buttons;
     const Inspection& inspection = prepared.inspection;
     Running running(job, prepared, chip, clock, heating);
     Shared& shared = running.shared;
@@ -357,14 +371,19 @@ Result<PrintReport> run(const PrintJob& job, Prepared& prepared, gpio::GpioChip&
     // At once: the keeper of the heaters' lines expects to hear of them.
     Tending tending(heating, shared);
     Supervision supervision(std::move(around.watchdog));
-    const Watched watched{signals, shared, life, heating, around.buttons, supervision};
-    if (const Status opened = open(watched, job, inspection, chip, clock); !opened) {
+    const Watched watched{signals, shared, life, heating, buttons, supervision};
+    if (const Before opened = open(watched, job, inspection, chip, clock); !opened.status) {
         shared.finished.store(true);
         tending.join();
         (void)chip.release();
-        life.end(opened, false);
-        return opened.error();
+        if (job.resumption && prepared.journal.journal)
+            keep_height(*job.resumption, opened.risen_mm, life.is_cancelled(),
+                        *prepared.journal.journal);
+        life.end(opened.status, false);
+        return opened.status.error();
     }
+    if (buttons)
+        life.lacks_filament = [buttons] { return buttons->is_active(config::input_filament); };
     std::optional<JournalWriter> journal;
     if (prepared.journal.journal) journal.emplace(std::move(*prepared.journal.journal));
     life.keep_journal(journal ? &*journal : nullptr, prepared.journal.file);

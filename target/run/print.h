@@ -16,8 +16,8 @@
 //  5. The pulses are those of the simulation, in the same order, with at least the same gaps.
 //  6. Commands of `control` are served as life.h says, by this thread; it tells there what the print is, to its end. While
 //     `before` is done they are what opening.h says; heaters are tended and inputs watched from then on.
-//  7. With a journal (journal.h) the print can be resumed after it was cut off, also by a signal or a guard; one that is done
-//     or cancelled takes it away. A journal that cannot be written, or is another printer's, is a warning, before anything
+//  7. With a journal (journal.h) the print can be resumed after it was cut off, also by a signal or a guard, and also where
+//     a resumption ends before its path; one that is done or cancelled takes it away. A journal that cannot be written, or is another printer's, is a warning, before anything
 //     moves and in the status.
 //  8. The watchdog is fed by this thread as long as the heaters' thread ticks; the init system is told how it goes.
 //  9. Buttons and sensors act as life.h says; input lines that cannot be read take heat and motion away, as a guard does.
@@ -37,13 +37,20 @@
 
 namespace lyr::run {
 
+// What became of what comes before the path.
+struct Before {
+    Before(Status what = Done{}, double mm = 0) : status(std::move(what)), risen_mm(mm) {}
+    Status status;
+    double risen_mm;  // how far the head has gone up, done or not
+};
+
 struct PrintJob {
     std::string file;
     config::Printer printer;
     bool no_heat = false;
     ProgressSink progress;
     // What is done on the lines before the print, such as homing: the motors are to stay on and the head at start_mm.
-    std::function<Status(gpio::GpioChip&, gpio::Clock&, const StopSource&)> before{};
+    std::function<Before(gpio::GpioChip&, gpio::Clock&, const StopSource&)> before{};
     PrintControl* control = nullptr;  // none: only signals and buttons do something
     // Called once, when the file and the printer are found right: no line is held yet, and signals still end the program.
     // What is said later may wait for a terminal with the motors on: so it gets all that is to be said of what is to come.

@@ -81,3 +81,18 @@ TEST_CASE("session 3: who does not take answers gets no more, and gets all of th
     CHECK(answered == asked);
     CHECK(session.wants_more());
 }
+
+TEST_CASE("session 3: answers that were sent were kept as long as one more was waiting") {
+    Session session;
+    std::string expected, got;
+    for (int i = 0; i < 3'000; ++i) {
+        const std::string answer = std::to_string(i) + std::string(60, 'y');
+        session.answer(answer);
+        expected += answer + '\n';
+        const std::size_t bytes = session.unsent().size() - 1;
+        got += session.unsent().substr(0, bytes);
+        session.sent(bytes);
+        CHECK(session.held_bytes() <= Session::full_bytes + 2 * answer.size());
+    }
+    CHECK(got + std::string(session.unsent()) == expected);
+}

@@ -257,6 +257,26 @@ TEST_CASE("inputs 5: edges that nobody collected in time are a failure, not a wr
     CHECK(mentions(collected.error().message, "x.endstop"));
 }
 
+TEST_CASE("inputs 5: a button that bounced for long ended the print") {
+    set_up_board();
+    const std::vector<InputRequest> requests{{{"stop", "gpiochip0", 6u, true}, Pull::up, true}};
+    const auto inputs = open_gpiod_inputs(requests);
+    REQUIRE(inputs.ok());
+    for (const bool level : {true, false}) {
+        for (int i = 0; i < 21; ++i)
+            tests::FakeBoard::turn(board().chips[0].lines[6], (i % 2 == 0) == level, 1'000 * i);
+        std::array<InputEdge, 64> edges{};
+        const auto collected = (*inputs)->collect(edges);
+        REQUIRE(collected.ok());
+        REQUIRE(*collected == 16);
+        CHECK(edges[15].active == !level);
+        // What is left in the queue goes on from there.
+        const auto rest = (*inputs)->collect(edges);
+        REQUIRE(rest.ok());
+        if (*rest > 0) CHECK(edges[*rest - 1].active == !level);
+    }
+}
+
 TEST_CASE("gpiod inputs 3: a line is not watched twice, nor beside its use as an output") {
     set_up_board();
     const InputRequest stop{{"stop", "gpiochip0", 6u}, Pull::up};

@@ -54,3 +54,14 @@ TEST_CASE("event flow 2, 3: all comes out, and a second request to stop ends it 
         CHECK(taken == events.size());
     }
 }
+
+TEST_CASE("event flow 2: a planner that hung before the path began kept the heat on for ever") {
+    const StopRequests stop_requests{0};
+    const std::atomic<bool> finished{false};
+    EventFlow flow(stop_requests, finished, 20);
+    const Result<bool> drained =
+        flow.drain([](std::span<const LineEvent>) -> Result<bool> { return true; });
+    REQUIRE(drained.ok());
+    CHECK_FALSE(*drained);
+    CHECK(flow.ran_dry());
+}

@@ -271,3 +271,41 @@ TEST_CASE("inspect 2: a path too slow for the format began to print, and ended i
     CHECK(refused.error().where.layer == 2);
     CHECK(refused.error().message.find("steps of 0.01 mm/s") != std::string::npos);
 }
+
+TEST_CASE(
+    "print 7: a resumption that ended while it homed forgot how high it had lifted the head") {
+    const std::string file = write_print("homing_again", {draw_stroke});
+    gpio::MonotonicClock clock;
+    for (const bool is_cancelled : {false, true}) {
+        CAPTURE(is_cancelled);
+        gpio::MockChip chip(start_lines, clock, {});
+        const config::Printer printer = patient_printer();
+        PrintControl control;
+        PrintJob job{file, printer, true, {}};
+        job.control = &control;
+        job.journal = file + ".journal";
+        JournalEntry entry;
+        entry.file = *identity_of(file);
+        entry.printer = identity_of(printer);
+        entry.layer = entry.layers = 1;
+        {
+            Result<Journal> journal = Journal::open(job.journal);
+            REQUIRE(journal.ok());
+            REQUIRE(journal->write(entry).ok());
+        }
+        Resumption resumption;
+        resumption.entry = entry;
+        resumption.stopped_z_mm = 7;
+        job.resumption = resumption;
+        job.is_lifted = true;
+        job.before = [&](gpio::GpioChip&, gpio::Clock&, const StopSource&) -> Before {
+            if (is_cancelled) control.post(Cancel{});
+            return {Diagnostic{Severity::error, ExitStatus::machine, "no endstop", {}}, 3.25};
+        };
+        CHECK_FALSE(print(job, chip, clock).ok());
+        const auto kept = read_journal(job.journal);
+        REQUIRE(kept.ok());
+        CHECK(kept->has_value() != is_cancelled);
+        if (*kept) CHECK((*kept)->rest_nm == 10'250'000);
+    }
+}
