@@ -1,10 +1,25 @@
 #include "target/run/course.h"
 
+#include <algorithm>
+
 namespace lyr::run {
 namespace {
 
 // How long the real-time thread sleeps at rest before it looks for what comes next.
 constexpr std::int64_t rest_nap_ns = 5'000'000;
+
+// A few events at a time, and where the head is by then.
+Result<bool> make(std::span<const LineEvent> trip, Executor& executor, Course& course) {
+    constexpr std::size_t batch = 64;
+    Result<bool> made = true;
+    executor.begin_trip();
+    for (; made && *made && !trip.empty(); trip = trip.subspan(std::min(batch, trip.size()))) {
+        made = executor.execute(trip.first(std::min(batch, trip.size())));
+        course.tell(executor);
+    }
+    executor.end_trip();
+    return made;
+}
 
 // True: go on along the path.
 Result<bool> rest(Executor& executor, Course& course, gpio::Clock& clock,
@@ -13,8 +28,7 @@ Result<bool> rest(Executor& executor, Course& course, gpio::Clock& clock,
     course.at_rest.store(true, std::memory_order_release);
     while (stop_requests.load(std::memory_order_relaxed) == 0) {
         if (const Trip* trip = course.trip.load(std::memory_order_acquire)) {
-            const Result<bool> made = executor.execute_trip(*trip);
-            course.tell(executor);
+            const Result<bool> made = make(*trip, executor, course);
             course.trip.store(nullptr, std::memory_order_release);
             if (!made || !*made) return made;
         } else if (course.wanted_pace.load(std::memory_order_relaxed) > 0 &&

@@ -49,15 +49,16 @@ Result<bool> Executor::execute(std::span<const LineEvent> events) {
     return run(events);
 }
 
-Result<bool> Executor::execute_trip(std::span<const LineEvent> events) {
+void Executor::begin_trip() {
     path_ns_ = last_event_ns_;
     on_trip_ = rebased_ = true;
     pace_ = 1;
-    Result<bool> done = run(events);
+}
+
+void Executor::end_trip() {
     on_trip_ = false;
     last_event_ns_ = path_ns_;
     go_on();
-    return done;
 }
 
 void Executor::go_on() {

@@ -77,8 +77,9 @@ public:
     // Of the last call of execute().
     std::size_t taken() const { return taken_; }
     void go_on();
-    // The events begin and end with levels().
-    Result<bool> execute_trip(std::span<const LineEvent> events);
+    // In between, execute() is for a trip, whose events begin and end with levels().
+    void begin_trip();
+    void end_trip();
 
     // Of the event written last, on the time base of the events.
     std::int64_t time_ns() const { return on_trip_ ? path_ns_ : last_event_ns_; }

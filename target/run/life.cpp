@@ -371,7 +371,10 @@ void Life::let_cool(double rested_s) {
 motion::Point Life::head() const {
     StepPositions steps = course_.steps();
     for (std::size_t i = 0; i < steps.size(); ++i) steps[i] -= lifted_steps_[i];
-    return head_at(printer_, steps);
+    motion::Point head = head_at(printer_, steps);
+    // The printer's start is where the lift leads.
+    if (is_to_lift_) head.z -= printer_.start_mm[config::axis_z] - parked_at_.z;
+    return head;
 }
 
 void Life::begin_with(const Resumption& resumption, bool is_lifted) {

@@ -73,11 +73,9 @@ void Life::post(const JournalEntry& entry) {
 void Life::note_rest() {
     if (!journal_ || (!course_.started.load() && !resumes_)) return;
     look();
-    // The printer's start is where the lift leads.
-    const double below_mm = is_to_lift_ ? printer_.start_mm[config::axis_z] - parked_at_.z : 0;
     JournalEntry entry = noted_;
     entry.layer = layer_;
-    entry.rest_nm = std::llround((head().z - below_mm) * nm_per_mm);
+    entry.rest_nm = std::llround(head().z * nm_per_mm);
     entry.drawn_back_um = drawn_back_um();
     entry.is_unloaded = is_unloaded_;
     entry.place_um.reset();

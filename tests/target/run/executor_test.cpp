@@ -377,7 +377,9 @@ TEST_CASE("executor 9: rests among pulses that overlap lose and double no step")
         schedule.begin(0, trip);
         schedule.append(trip_steps, trip);
         schedule.finish_as_begun(trip);
-        const Result<bool> back = executor.execute_trip(trip);
+        executor.begin_trip();
+        const Result<bool> back = executor.execute(trip);
+        executor.end_trip();
         REQUIRE(back.ok());
         CHECK(*back);
         pace = 1;

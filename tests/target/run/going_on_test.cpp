@@ -182,6 +182,7 @@ TEST_CASE("life 7: a resumption that was stopped while it lifted took the layer 
     CHECK((*cut)->rest_nm == 6'500'000);
     // Stopped here, it is half a millimetre higher.
     print.course.trip_steps[config::axis_z] += 200;
+    CHECK(print.after(1).position_mm[2] == doctest::Approx(7));
     print.course.trip.store(nullptr);
     print.life.note_rest();
     CHECK(print.noted().rest_nm == 7'000'000);

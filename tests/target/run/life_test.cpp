@@ -388,7 +388,9 @@ TEST_CASE("trip 3, 4: where the head is follows from its motors, whatever machin
             gpio::MockChip chip(8, clock, {});
             const StopRequests stop{0};
             Executor executor(chip, clock, executor_timing(printer), stop);
-            REQUIRE(executor.execute_trip(*trip).ok());
+            executor.begin_trip();
+            REQUIRE(executor.execute(*trip).ok());
+            executor.end_trip();
             const motion::Point at = head_at(printer, executor.trip_steps());
             CHECK(std::abs(at.x - to.x) < 0.05);
             CHECK(std::abs(at.y - to.y) < 0.05);
