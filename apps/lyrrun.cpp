@@ -277,6 +277,7 @@ Status print(const Arguments& arguments, const config::Printer& printer) {
         };
     if (!arguments.dry_run) job.journal = run::journal_path(printer, arguments.lyr_path);
     job.control = &control;
+    job.is_reachable = server->is_reachable();
     job.checked = [&](const Diagnostics& notes) {
         show(program, server->notes());
         show(program, notes);

@@ -63,8 +63,12 @@ Result<PrintServer> PrintServer::open(const std::string& socket, const config::P
     return PrintServer(std::move(work));
 }
 
+bool PrintServer::is_reachable() const {
+    return work_->listener.has_value();
+}
+
 Diagnostics PrintServer::notes() const {
-    if (work_->listener) return {};
+    if (is_reachable()) return {};
     return {{Severity::note,
              ExitStatus::ok,
              "lyrctl cannot reach this print: there is no folder for its socket; --socket makes "

@@ -24,6 +24,8 @@ public:
     PrintServer& operator=(PrintServer&&) = delete;
     ~PrintServer();
 
+    // Somebody can give commands.
+    bool is_reachable() const;
     // What the user must know before start().
     Diagnostics notes() const;
     // On a thread of its own.

@@ -29,8 +29,8 @@ Result<bool> rest(Executor& executor, Course& course, gpio::Clock& clock,
     while (stop_requests.load(std::memory_order_relaxed) == 0) {
         if (const Trip* trip = course.trip.load(std::memory_order_acquire)) {
             const Result<bool> made = make(*trip, executor, course);
-            course.trip.store(nullptr, std::memory_order_release);
             if (!made || !*made) return made;
+            course.trip.store(nullptr, std::memory_order_release);
         } else if (course.wanted_pace.load(std::memory_order_relaxed) > 0 &&
                    !course.at_end.load(std::memory_order_acquire)) {
             course.at_rest.store(false, std::memory_order_release);

@@ -121,7 +121,7 @@ void Life::rest_for(Command reason) {
     if (has_finished_) return refuse(reason, "the path is done");
     const bool unloads = std::holds_alternative<ChangeFilament>(reason) && !is_unloaded_;
     // One that rests does so already, and one that is about to go on rests again.
-    if (phase_ == Phase::heating) phase_ = Phase::resting, rest_since_s_ = now_s_;
+    if (phase_ == Phase::heating) rest_here();
     rests_again_ =
         phase_ == Phase::lifting || phase_ == Phase::loading || phase_ == Phase::returning;
     goes_on_ = false;
@@ -132,6 +132,7 @@ void Life::rest_for(Command reason) {
     if (phase_ == Phase::resting && unloads) unload();
     if (phase_ != Phase::printing) return;
     left_since_s_ = now_s_;
+    idle_since_s_.fill(now_s_);
     phase_ = Phase::braking;
 }
 
@@ -180,6 +181,8 @@ void Life::load() {
 
 void Life::loaded() {
     is_unloaded_ = false;
+    pushed_steps_ =
+        fed_steps() + std::llround(drawn_back_mm_ * printer_.axes[config::axis_e].steps_per_mm);
     heat_again();
 }
 
@@ -192,7 +195,7 @@ void Life::heat_again() {
 
 void Life::rest_here() {
     phase_ = Phase::resting;
-    rest_since_s_ = now_s_;
+    idle_since_s_.fill(now_s_);
 }
 
 void Life::resume() {
@@ -232,7 +235,7 @@ void Life::wait_for_heat() {
                                            : "the heaters have not reached their targets") +
                " within an hour, the heaters are off, and the print rests";
     phase_ = Phase::resting;
-    rest_since_s_ = now_s_ - std::max(printer_.pause.tool_off_s, printer_.pause.bed_off_s);
+    idle_since_s_.fill(now_s_ - std::max(printer_.pause.tool_off_s, printer_.pause.bed_off_s));
     rest();
 }
 
@@ -264,6 +267,7 @@ void Life::set_temperature(const SetTemperature& set) {
             set, formatted("filament is pushed from %g °C on; pause first", heater.min_extrude_c));
     if (is_tool) cold_by_hand_c_ = is_cold ? std::optional(set.target_c) : std::nullopt;
     desk_.set_target(set.heater, set.target_c);
+    idle_since_s_[set.heater] = now_s_;
 }
 
 void Life::advance() {
@@ -296,7 +300,7 @@ void Life::brake(bool rests) {
     course_.wanted_pace.store(0);
     if (rests) return park();
     // A path of which no more comes does not come to rest, either.
-    if (!cancels()) let_cool(now_s_ - left_since_s_);
+    if (!cancels()) let_cool();
 }
 
 bool Life::make(std::span<const Leg> legs, const motion::Point& from) {
@@ -317,6 +321,7 @@ void Life::park() {
     phase_ = Phase::parking;
     if (cancels()) drop_heat();
     left_at_ = parked_at_ = head();
+    pushed_steps_ = fed_steps();
     // Before the first motion there is nothing to come away from.
     if (!course_.started.load()) return;
     const config::PauseSettings& pause = printer_.pause;
@@ -336,8 +341,7 @@ void Life::park() {
 }
 
 void Life::parked() {
-    rest_since_s_ = now_s_;
-    phase_ = Phase::resting;
+    rest_here();
     if (changes_filament() && !is_unloaded_) unload();
     if (has_finished_) {
         phase_ = Phase::over;
@@ -355,14 +359,15 @@ void Life::parked() {
 
 void Life::rest() {
     if (cancels()) return parked();
-    let_cool(now_s_ - rest_since_s_);
+    let_cool();
 }
 
-void Life::let_cool(double rested_s) {
+void Life::let_cool() {
     std::array<bool, config::heater_count> standby{};
     for (std::size_t i = 0; i < standby.size(); ++i)
-        standby[i] = rested_s >= (i == config::heater_tool ? printer_.pause.tool_off_s
-                                                           : printer_.pause.bed_off_s);
+        standby[i] =
+            now_s_ - idle_since_s_[i] >=
+            (i == config::heater_tool ? printer_.pause.tool_off_s : printer_.pause.bed_off_s);
     if (standby == standby_) return;
     standby_ = standby;
     desk_.set_standby(standby_);

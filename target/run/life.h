@@ -14,7 +14,8 @@
 //  2. Filament is moved only if the tool has min_extrude_c, before a resume it is heated and waited for. A tool that was set
 //     to less in a pause must be set to more before it. Heat that has not come within an hour is taken away, and the print
 //     rests on.
-//  3. A pause that lasts for longer than printer.toml says lets tool, bed and chamber go cold.
+//  3. A pause that lasts for longer than printer.toml says lets tool, bed and chamber go cold; one whose temperature is set
+//     then is warm for as long again.
 //  4. A cancel takes all heat away once no filament is under way, parks too, and ends by a request to stop; an emergency
 //     stop does so at once, and calls `cut`. At the end of the path the head parks as for a pause, at the heat that the file left; commands come too late then.
 //  5. What cannot be done as things are is refused, and status().message says why.
@@ -86,7 +87,7 @@ public:
     double paused_s() const { return paused_s_; }
     const std::optional<Diagnostic>& journal_error() const { return journal_error_; }
     bool rests() const { return phase_ == Phase::resting; }
-    bool is_cancelled() const { return ended_by_ && cancels(); }
+    bool is_cancelled() const { return cancels(); }
     // Ended by command: what to say.
     const std::optional<std::string>& ended_by() const { return ended_by_; }
 
@@ -114,7 +115,7 @@ private:
     void parked();
     void rest();
     void go_back();
-    void let_cool(double rested_s);
+    void let_cool();
     void brake(bool rests);
     bool leave();
     void lift();
@@ -128,6 +129,9 @@ private:
     bool is_on_path() const;
     // By the path and by a pause.
     std::int32_t drawn_back_um() const;
+    // As counted, also in the middle of a trip.
+    double drawn_back_now_mm() const;
+    std::int64_t fed_steps() const;
     // Before going back, and not for ever.
     void wait_for_heat();
     void hear_of_journal();
@@ -161,12 +165,15 @@ private:
     Phase phase_ = Phase::printing;
     Command reason_ = Pause{};       // of the rest
     std::optional<double> begun_s_;  // the first tick
-    double now_s_ = 0, left_since_s_ = 0, rest_since_s_ = 0, paused_s_ = 0;
-    std::optional<double> heating_since_s_;         // for going on
+    double now_s_ = 0, left_since_s_ = 0, paused_s_ = 0;
+    std::array<double, config::heater_count> idle_since_s_{};  // in a rest
+    std::optional<double> heating_since_s_;                    // for going on
     double speed_factor_ = 1, planned_factor_ = 1;  // wanted, and of the path where the head is
     Trip trip_;                                     // while the motion makes it
     motion::Point left_at_, parked_at_;
     double drawn_back_mm_ = 0, drawn_back_on_path_mm_ = 0;
+    std::int64_t pushed_steps_ =
+        0;  // what trips had fed when the filament was not drawn back by them
     bool is_unloaded_ = false;
     bool awaits_filament_ = false;  // before the path begins
     bool has_finished_ = false;     // the path

@@ -43,6 +43,15 @@ std::int32_t Life::drawn_back_um() const {
         std::lround((drawn_back_on_path_mm_ + drawn_back_mm_) * um_per_mm));
 }
 
+std::int64_t Life::fed_steps() const {
+    return course_.trip_steps[config::axis_e].load(std::memory_order_relaxed);
+}
+
+double Life::drawn_back_now_mm() const {
+    return static_cast<double>(pushed_steps_ - fed_steps()) /
+           printer_.axes[config::axis_e].steps_per_mm;
+}
+
 void Life::note() {
     if (!journal_) return;
     hear_of_journal();
@@ -76,7 +85,8 @@ void Life::note_rest() {
     JournalEntry entry = noted_;
     entry.layer = layer_;
     entry.rest_nm = std::llround(head().z * nm_per_mm);
-    entry.drawn_back_um = drawn_back_um();
+    entry.drawn_back_um = static_cast<std::int32_t>(
+        std::lround((drawn_back_on_path_mm_ + drawn_back_now_mm()) * um_per_mm));
     entry.is_unloaded = is_unloaded_;
     entry.place_um.reset();
     post(entry);

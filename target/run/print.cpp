@@ -198,7 +198,8 @@ void watch(const Watched& watched, const PrintJob& job, const Inspection& inspec
 }
 
 Diagnostic stopped(const Shared& shared, const Life& life) {
-    std::string why = life.ended_by().value_or("stopped on request");
+    std::string why = life.ended_by().value_or(life.is_cancelled() ? "cancelled, and stopped"
+                                                                   : "stopped on request");
     if (!life.ended_by() && shared.stop_requests > 1)
         why += " at once, so that the position of the head is lost";
     return {Severity::error,
@@ -232,7 +233,7 @@ struct Prepared {
 };
 
 bool can_resume(const PrintJob& job) {
-    return job.control || job.printer.inputs[config::input_pause];
+    return (job.control && job.is_reachable) || job.printer.inputs[config::input_pause];
 }
 
 Result<Prepared> prepare(const PrintJob& job) {

@@ -52,6 +52,7 @@ struct PrintJob {
     // What is done on the lines before the print, such as homing: the motors are to stay on and the head at start_mm.
     std::function<Before(gpio::GpioChip&, gpio::Clock&, const StopSource&)> before{};
     PrintControl* control = nullptr;  // none: only signals and buttons do something
+    bool is_reachable = true;         // somebody can give the control commands
     // Called once, when the file and the printer are found right: no line is held yet, and signals still end the program.
     // What is said later may wait for a terminal with the motors on: so it gets all that is to be said of what is to come.
     std::function<void(const Diagnostics& notes)> checked{};

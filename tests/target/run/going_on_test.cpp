@@ -82,10 +82,11 @@ TEST_CASE("life 4: a cancel that a signal cut short said that the head is parked
     print.course.at_rest.store(true);
     print.after(4);
     REQUIRE(print.course.trip.load() != nullptr);
+    // What is cut short is not taken off.
     ++print.control.stop_requests();
-    print.course.trip.store(nullptr);
-    print.after(5);
-    CHECK(print.life.ended_by() == "cancelled, and stopped");
+    CHECK(print.after(5).state == PrintState::stopping);
+    CHECK_FALSE(print.life.ended_by());
+    CHECK(print.life.is_cancelled());
 }
 
 TEST_CASE("life 2: filament was pushed with a tool that the file had let go cold") {
@@ -195,4 +196,50 @@ TEST_CASE("life 7: a resumption that was stopped once it was lifted knows how hi
     print.after(2);
     print.life.note_rest();
     CHECK(print.noted().rest_nm == 11'500'000);
+}
+
+TEST_CASE("life 3: a temperature that was set in a long pause had no effect") {
+    Resumed print(true, "set_in_pause");
+    begin_path(print);
+    pause_path(print);
+    print.printer.heaters[config::heater_tool] =
+        config::generic_printer().heaters[config::heater_tool];
+    const double tool_off_s = print.printer.pause.tool_off_s;
+    const double long_s = 10 + print.printer.pause.bed_off_s;
+    print.after(long_s);
+    REQUIRE(is_cold(print));
+    print.after(long_s + 1, SetTemperature{config::heater_tool, 210});
+    const HeatWish wish = print.desk.take();
+    CHECK(wish.targets_c[config::heater_tool] == 210);
+    CHECK_FALSE(wish.standby[config::heater_tool]);
+    CHECK(wish.standby[config::heater_bed]);
+    print.after(long_s + 2 + tool_off_s);
+    CHECK(is_cold(print));
+}
+
+TEST_CASE("life 7: a stop while filament was pushed in said in the journal that it is there") {
+    for (const bool is_changed : {false, true}) {
+        CAPTURE(is_changed);
+        Resumed print(true, "stopped_pushing");
+        begin_path(print);
+        pause_path(print);
+        if (is_changed) {
+            print.after(6, ChangeFilament{});
+            print.end_trip();
+            print.after(7);
+        }
+        print.after(8, Resume{});
+        print.heated(9);
+        REQUIRE(print.course.trip.load() != nullptr);
+        // A signal, half a millimetre on.
+        const double steps_per_mm = print.printer.axes[config::axis_e].steps_per_mm;
+        print.course.trip_steps[config::axis_e] += std::llround(0.5 * steps_per_mm);
+        ++print.control.stop_requests();
+        print.after(10);
+        print.life.note_rest();
+        const JournalEntry noted = print.noted();
+        CHECK(noted.is_unloaded == is_changed);
+        CHECK(noted.rest_nm == 16'500'000);
+        if (!is_changed) CHECK(noted.drawn_back_um == 1'500);
+    }
 }

@@ -309,3 +309,21 @@ TEST_CASE(
         if (*kept) CHECK((*kept)->rest_nm == 10'250'000);
     }
 }
+
+TEST_CASE("demands: a file that pauses was printed where no command could reach the print") {
+    const std::string file = write_print("unreachable", {[](const Pen& pen) {
+                                             draw_stroke(pen);
+                                             pen.layer.pause(format::PauseReason::user);
+                                             pen.line(3, 0);
+                                         }});
+    gpio::MonotonicClock clock;
+    gpio::MockChip chip(start_lines, clock, {});
+    PrintControl control;
+    PrintJob job{file, patient_printer(), true, {}};
+    job.control = &control;
+    job.is_reachable = false;
+    const Result<PrintReport> report = print(job, chip, clock);
+    REQUIRE_FALSE(report.ok());
+    CHECK(report.error().status == ExitStatus::unsupported);
+    CHECK(report.error().message.find("nobody could tell it to go on") != std::string::npos);
+}
