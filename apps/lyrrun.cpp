@@ -340,7 +340,7 @@ Status check_together(const Arguments& arguments) {
     } else if (arguments.lyr_path.empty()) {
         return usage(
             "print is required, the .lyr file that stepc wrote, or --check, --measure-latency, "
-            "--tune, --home, --jog or --calibrate");
+            "--tune, --home, --jog, --calibrate or --off");
     }
     if (!arguments.simulate && !arguments.faults_path.empty())
         return usage("--faults needs --simulate");

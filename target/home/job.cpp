@@ -42,13 +42,14 @@ Status on_board(const config::Printer& printer, Diagnostics& warnings, const Wor
     if (const Status has = run::check_cpu(printer.timing.cpu); !has) return has.error();
     const Result<std::vector<gpio::LineRequest>> requests = run::line_requests(printer);
     if (!requests) return requests.error();
+    // Before lines are held: one that comes meanwhile must not leave them as they are.
+    const run::StopSignals signals;
     const Result<std::unique_ptr<gpio::InputLines>> inputs = open_inputs(printer);
     if (!inputs) return inputs.error();
     Result<std::optional<run::Buttons>> buttons = run::open_buttons(printer);
     if (!buttons) return buttons.error();
     const Result<std::unique_ptr<gpio::GpioChip>> chip = gpio::open_gpiod_chip(*requests);
     if (!chip) return chip.error();
-    const run::StopSignals signals;
     run::lock_memory(warnings);
     gpio::MonotonicClock clock;
     const auto stop = [&]() -> unsigned {

@@ -175,6 +175,15 @@ Result<std::optional<JournalEntry>> read_journal(const std::string& path) {
                       {.file = path}};
 }
 
+bool is_kept(const std::string& path) {
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0) return false;
+    const bool is_free = ::flock(descriptor, LOCK_SH | LOCK_NB) == 0;
+    const bool is_locked = !is_free && errno == EWOULDBLOCK;
+    ::close(descriptor);
+    return is_locked;
+}
+
 Result<Journal> Journal::open(const std::string& path) {
     constexpr mode_t for_all_to_read = 0644;
     const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, for_all_to_read);

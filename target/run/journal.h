@@ -51,6 +51,9 @@ struct JournalEntry {
 // None: no file, or an empty one. Errors (status input): it cannot be read, or nothing in it can be used.
 Result<std::optional<JournalEntry>> read_journal(const std::string& path);
 
+// A print that is under way writes it.
+bool is_kept(const std::string& path);
+
 class Journal {
 public:
     // Makes the file, or goes on after the entries that it has. Nobody else can until this one and what was forked with it

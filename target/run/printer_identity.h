@@ -20,7 +20,7 @@
 namespace lyr::run {
 
 inline constexpr std::array<std::string_view, 6> printer_parts{
-    "name", "kinematics", "the motors' lines", "steps_per_mm", "range_mm", "the bed's height map"};
+    "name", "kinematics", "motors' lines", "steps_per_mm", "range_mm", "height map"};
 
 struct PrinterIdentity {
     std::array<std::uint32_t, printer_parts.size()> parts{};  // a checksum of each

@@ -79,6 +79,8 @@ std::string journal_path(const config::Printer& printer, const std::string& file
 
 Result<Resumption> find_resumption(const config::Printer& printer, const std::string& file) {
     const std::string path = journal_path(printer, file);
+    if (is_kept(path))
+        return refused("it is being printed now: `lyrctl status` says how far it is", file);
     const Result<std::optional<JournalEntry>> entry = read_journal(path);
     if (!entry) return entry.error();
     if (!*entry)

@@ -2,7 +2,7 @@
 //
 // Contract
 //  1. A print goes on at the start of the layer that the head was in, in the state that the file says for it.
-//  2. find_resumption() refuses (status input) when there is no journal, or the file is not the one that it was written
+//  2. find_resumption() refuses (status input) when there is no journal, when a print that is under way keeps it, or the file is not the one that it was written
 //     for: not by name, but by all its bytes; or the printer is another one, as printer_identity.h says.
 //  3. x and y of the head are those of start_mm: it was put there, or homed. Its height is that of the layer, or where the
 //     journal says that it was at rest; it begins lifted by pause.lift_mm.

@@ -43,21 +43,21 @@ TEST_CASE("printer identity 1, 3: what places and moves the head counts, and is 
     differs("kinematics", [](auto& printer) { printer.delta.arm_mm[1] += 1e-9; });
     differs("kinematics", [](auto& printer) { printer.delta.radius_mm[2] -= 1; });
     differs("kinematics", [](auto& printer) { printer.delta.tower_angle_deg[0] = 211; });
-    differs("the motors' lines", [](auto& printer) { printer.axes[2].invert = true; });
-    differs("the motors' lines", [](auto& printer) { printer.axes[0].step->chip = "gpiochip1"; });
-    differs("the motors' lines", [](auto& printer) { printer.axes[0].step->line = "4"; });
-    differs("the motors' lines", [](auto& printer) { printer.axes[0].step->line = 5u; });
-    differs("the motors' lines", [](auto& printer) { printer.axes[0].step->active_low = true; });
-    differs("the motors' lines",
+    differs("motors' lines", [](auto& printer) { printer.axes[2].invert = true; });
+    differs("motors' lines", [](auto& printer) { printer.axes[0].step->chip = "gpiochip1"; });
+    differs("motors' lines", [](auto& printer) { printer.axes[0].step->line = "4"; });
+    differs("motors' lines", [](auto& printer) { printer.axes[0].step->line = 5u; });
+    differs("motors' lines", [](auto& printer) { printer.axes[0].step->active_low = true; });
+    differs("motors' lines",
             [](auto& printer) { std::swap(printer.axes[0].step, printer.axes[1].step); });
-    differs("the motors' lines",
+    differs("motors' lines",
             [](auto& printer) { std::swap(printer.axes[0].step, printer.axes[0].direction); });
     differs("steps_per_mm", [](auto& printer) { printer.axes[2].steps_per_mm *= 2; });
     differs("range_mm", [](auto& printer) { printer.axes[1].max_mm += 1; });
     differs("range_mm", [](auto& printer) { printer.axes[0].min_mm -= 1; });
-    differs("the bed's height map", [](auto& printer) { printer.mesh.heights_mm.clear(); });
-    differs("the bed's height map", [](auto& printer) { printer.mesh.heights_mm[1][0] = 0.21; });
-    differs("the bed's height map", [](auto& printer) { printer.start_mm[0] += 1; });
+    differs("height map", [](auto& printer) { printer.mesh.heights_mm.clear(); });
+    differs("height map", [](auto& printer) { printer.mesh.heights_mm[1][0] = 0.21; });
+    differs("height map", [](auto& printer) { printer.start_mm[0] += 1; });
     differs("name, steps_per_mm", [](auto& printer) {
         printer.name = "other";
         printer.axes[0].steps_per_mm = 7;

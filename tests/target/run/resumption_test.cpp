@@ -169,6 +169,21 @@ TEST_CASE(
     std::filesystem::remove(journal);
 }
 
+TEST_CASE("resumption 2: a print that was under way was said to be cut off") {
+    const config::Printer printer = config::generic_printer();
+    const std::string file = write_print("under_way", {draw_square});
+    write_journal(printer, file, {});
+    {
+        const Result<Journal> kept = Journal::open(journal_path(printer, file));
+        REQUIRE(kept.ok());
+        const Result<Resumption> refused = find_resumption(printer, file);
+        REQUIRE_FALSE(refused.ok());
+        CHECK(refused.error().message.find("being printed now") != std::string::npos);
+    }
+    CHECK(find_resumption(printer, file).ok());
+    std::filesystem::remove(journal_path(printer, file));
+}
+
 TEST_CASE("resumption 2: no journal, or another file, is refused") {
     const config::Printer printer = config::generic_printer();
     const std::string file = write_print("resume_other", {draw_square, draw_arcs});
