@@ -90,7 +90,7 @@ Result<bool> Executor::run(std::span<const LineEvent> events) {
         if (late_ns > timing_.late_limit_ns) return too_late(late_ns, timing_.late_limit_ns);
         last_begin_ns_ = is_step ? *begin_ns : due_ns;
         if (((event.levels ^ levels_) & all_mark_bits) && !pass_mark(event)) return rest();
-        if (Status written = write(event, last_begin_ns_, falls); !written) return written.error();
+        if (Status written = write(event, falls); !written) return written.error();
         ++taken_;
     }
     return true;
@@ -167,13 +167,12 @@ bool Executor::pass_mark(const LineEvent& event) {
     return !at_gate_;
 }
 
-Status Executor::write(const LineEvent& event, std::int64_t begin_ns, gpio::LineMask falls) {
+Status Executor::write(const LineEvent& event, gpio::LineMask falls) {
     const gpio::LineMask toggled = levels_ ^ event.levels;
     const gpio::LineMask lines = toggled & ~all_mark_bits;
     const bool is_written = lines != 0 || (toggled == 0 && falls == 0);
-    if (!on_trip_) behind_ns_ = begin_ns - event.time_ns;
+    if (!on_trip_) behind_ns_ = last_begin_ns_ - event.time_ns;
     Status written = is_written ? chip_.write(lines, event.levels) : Done{};
-    last_begin_ns_ = begin_ns;
     last_end_ns_ = clock_.now_ns();
     last_event_ns_ = event.time_ns;
     levels_ = event.levels;

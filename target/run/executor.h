@@ -109,7 +109,7 @@ private:
     // The time after the wait, or none if it was left on request.
     std::optional<std::int64_t> wait_until_ns(std::int64_t time_ns);
     // `falls`: the step lines that would end their pulse, if they had not at rest.
-    Status write(const LineEvent& event, std::int64_t begin_ns, gpio::LineMask falls);
+    Status write(const LineEvent& event, gpio::LineMask falls);
     // Ends the pulses that are out. Always false, or what failed.
     Result<bool> rest();
     void count(gpio::LineMask toggled, gpio::LineMask levels);

@@ -119,6 +119,12 @@ float Life::pace() const {
 void Life::rest_for(Command reason) {
     if (phase_ != Phase::printing && cancels()) return refuse(reason, "it is being cancelled");
     if (has_finished_) return refuse(reason, "the path is done");
+    // A change of filament that is under way is a pause, too.
+    const bool comes_to_rest = phase_ != Phase::printing && phase_ != Phase::resting;
+    if (comes_to_rest && changes_filament() && std::holds_alternative<Pause>(reason)) {
+        goes_on_ = false;
+        return;
+    }
     const bool unloads = std::holds_alternative<ChangeFilament>(reason) && !is_unloaded_;
     // One that rests does so already, and one that is about to go on rests again.
     if (phase_ == Phase::heating) rest_here();
@@ -211,7 +217,10 @@ void Life::resume() {
     }
     if (phase_ != Phase::resting) return refuse(Resume{}, "the print does not rest");
     if (lacks_filament && lacks_filament())
-        return refuse(Resume{}, "the filament sensor says that there is none: put it in first");
+        return refuse(Resume{},
+                      "the filament sensor says that there is none: put it in first; if the sensor "
+                      "is wrong, stop the print, take input.filament out of the printer's file and "
+                      "go on with --resume");
     if (cold_by_hand_c_)
         return refuse(
             Resume{},
@@ -220,6 +229,7 @@ void Life::resume() {
     message_.clear();
     standby_.fill(false);
     desk_.set_standby(standby_);
+    reason_ = Pause{};
     phase_ = Phase::heating;
     departs_ = false;
     heating_since_s_.reset();
@@ -445,10 +455,7 @@ bool Life::leave() {
 
 void Life::returned() {
     drawn_back_mm_ = 0;
-    if (cancels() || rests_again_) {
-        rests_again_ = false;
-        return park();
-    }
+    if (std::exchange(rests_again_, false)) return park();
     phase_ = Phase::printing;
     paused_s_ += now_s_ - left_since_s_;
     if (std::exchange(heeds_file_, false)) desk_.end_pause();

@@ -393,8 +393,9 @@ Result<PrintReport> run(const PrintJob& job, Prepared& prepared, gpio::GpioChip&
     std::thread edges([&] { drive(running, chip); });
     watch(watched, job, inspection);
     edges.join();
-    planner.join();
     tending.join();
+    // One that hangs is waited for when all is off and told.
+    if (!shared.flow->ran_dry()) planner.join();
     const Status status = status_of(shared, life, running.outcome);
     const bool is_known = running.outcome.executed.ok() && shared.stop_requests < 2;
     if (journal && (status || life.is_cancelled()))
@@ -403,6 +404,7 @@ Result<PrintReport> run(const PrintJob& job, Prepared& prepared, gpio::GpioChip&
         life.note_rest();
     if (journal) journal->finish();
     life.end(status, is_known);
+    if (planner.joinable()) planner.join();
     if (!status) return status.error();
     if (life.journal_error()) report.warnings.push_back(*life.journal_error());
     report_on(running.executor, running.traced, report);

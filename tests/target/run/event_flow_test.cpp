@@ -12,8 +12,9 @@ using namespace lyr::run;
 TEST_CASE(
     "event flow 3: a planner that hung left the head where it was, and the heat on, for ever") {
     const StopRequests stop_requests{0};
-    const std::atomic<bool> finished{false};
-    EventFlow flow(stop_requests, finished, 20);
+    std::atomic<bool> finished{false};
+    constexpr int about_a_second = 10'000;
+    EventFlow flow(stop_requests, finished, about_a_second);
     std::vector<LineEvent> events(EventFlow::ring_events);
     for (std::size_t i = 0; i < events.size(); ++i)
         events[i].time_ns = static_cast<std::int64_t>(i);
@@ -26,6 +27,7 @@ TEST_CASE(
         taken += few.size();
         return true;
     });
+    finished.store(true);
     planner.join();
     REQUIRE(drained.ok());
     CHECK_FALSE(*drained);
@@ -64,4 +66,15 @@ TEST_CASE("event flow 2: a planner that hung before the path began kept the heat
     REQUIRE(drained.ok());
     CHECK_FALSE(*drained);
     CHECK(flow.ran_dry());
+}
+
+TEST_CASE("event flow 3: a ring that is dry is left at once where a stop was asked for twice") {
+    const StopRequests stop_requests{2};
+    const std::atomic<bool> finished{false};
+    EventFlow flow(stop_requests, finished, 20);
+    const Result<bool> drained =
+        flow.drain([](std::span<const LineEvent>) -> Result<bool> { return true; });
+    REQUIRE(drained.ok());
+    CHECK_FALSE(*drained);
+    CHECK_FALSE(flow.ran_dry());
 }

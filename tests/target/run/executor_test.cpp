@@ -429,3 +429,26 @@ TEST_CASE("executor 6: a failed write ends the print with its own message") {
     CHECK(result.error().message == "bus error");
     CHECK(writes.size() == 17);
 }
+
+TEST_CASE("executor 9: after a rest, steps that are far apart bring the pace back at once") {
+    gpio::VirtualClock clock;
+    std::vector<gpio::LineWrite> writes;
+    gpio::MockChip chip(8, clock, gpio::recorder(writes));
+    const StopRequests stop{0};
+    WantedPace pace{1};
+    Executor executor(chip, clock, {2'000, 10'000'000, 100'000'000}, stop, nullptr, &pace);
+    const auto pulses = [](std::int64_t from_ns, std::int64_t apart_ns, int count) {
+        std::vector<LineEvent> events;
+        for (int i = 0; i < count; ++i) {
+            events.push_back({from_ns + i * apart_ns, step_bit(0)});
+            events.push_back({from_ns + i * apart_ns + 2'000, 0});
+        }
+        return events;
+    };
+    REQUIRE(executor.execute(pulses(0, 30'000'000, 2)).ok());
+    executor.go_on();
+    const std::int64_t from_ns = clock.now_ns();
+    REQUIRE(executor.execute(pulses(60'000'000, 30'000'000, 4)).ok());
+    REQUIRE(executor.execute(pulses(180'000'000, 1'000'000, 20)).ok());
+    CHECK(clock.now_ns() - from_ns < 180'000'000);
+}

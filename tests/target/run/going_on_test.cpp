@@ -243,3 +243,37 @@ TEST_CASE("life 7: a stop while filament was pushed in said in the journal that 
         if (!is_changed) CHECK(noted.drawn_back_um == 1'500);
     }
 }
+
+TEST_CASE("life 1: a pause took a change of filament back that was under way") {
+    for (const bool is_parking : {false, true}) {
+        CAPTURE(is_parking);
+        Resumed print(true, "taken_back");
+        begin_path(print);
+        print.after(3, ChangeFilament{});
+        if (!is_parking) print.after(4, Pause{});
+        print.course.at_rest.store(true);
+        print.after(5);
+        if (is_parking) print.after(6, Pause{});
+        print.end_trip();
+        CHECK(print.after(7).state == PrintState::pausing);
+        CHECK(print.end_trip()[config::axis_e] < 0);
+        print.after(8);
+        CHECK(print.noted().is_unloaded);
+    }
+}
+
+TEST_CASE("life 1: a pause on the way back from a change of filament draws nothing out") {
+    Resumed print(true, "not_again");
+    unload(print);
+    print.after(8, Resume{});
+    print.heated(9);
+    print.end_trip();
+    print.heated(10);
+    print.after(11, Pause{});
+    print.end_trip();
+    print.after(12);
+    print.end_trip();
+    CHECK(print.after(13).state == PrintState::paused);
+    CHECK(print.course.trip.load() == nullptr);
+    CHECK_FALSE(print.noted().is_unloaded);
+}
