@@ -277,3 +277,29 @@ TEST_CASE("life 1: a pause on the way back from a change of filament draws nothi
     CHECK(print.course.trip.load() == nullptr);
     CHECK_FALSE(print.noted().is_unloaded);
 }
+
+TEST_CASE("life 7: a stop on the way to the park place asked for filament that was still in") {
+    for (const bool draws_out : {false, true}) {
+        CAPTURE(draws_out);
+        Resumed print(true, "stopped_parking");
+        begin_path(print);
+        print.after(3, ChangeFilament{});
+        print.course.at_rest.store(true);
+        print.after(4);
+        if (draws_out) {
+            print.end_trip();
+            print.after(5);
+        }
+        REQUIRE(print.course.trip.load() != nullptr);
+        // A millimetre of filament on.
+        print.course.trip_steps[config::axis_e] -=
+            std::llround(print.printer.axes[config::axis_e].steps_per_mm);
+        ++print.control.stop_requests();
+        print.after(6);
+        print.life.note_rest();
+        const JournalEntry noted = print.noted();
+        CHECK(noted.is_unloaded == draws_out);
+        CHECK(noted.rest_nm == (draws_out ? 16'500'000 : 11'500'000));
+        if (!draws_out) CHECK(noted.drawn_back_um == 1'000);
+    }
+}
