@@ -51,8 +51,8 @@ struct NumberRange {
     double low, high;
     const char* unit;
 };
-// As many finite numbers as `values` holds, with commas between them. `shape` is how help shows them: "MM", "X,Y"; the values
-// are its defaults.
+// As many finite numbers as `values` holds, with commas between them. `shape` is how help shows them: "MM", "X,Y";
+// the values are its defaults.
 void add_numbers(Options& options, const std::string& option, const char* shape,
                  std::span<double> values, const NumberRange& range, const std::string& text);
 

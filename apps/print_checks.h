@@ -1,5 +1,5 @@
-// What lyrview does with prints that may be damaged, with two of them, and with their pictures: --verify, --repair, --diff,
-// --thumbnail.
+// What lyrview does with prints that may be damaged, with two of them, and with their pictures: --verify, --repair,
+// --diff, --thumbnail.
 
 #pragma once
 
@@ -19,8 +19,9 @@ struct CheckRequest {
 
 void add_checks(Options& app, CheckRequest& request);
 
-// `others`: options of the command line that are not for these. Errors: the print is damaged or missing (input), of a newer
-// version (unsupported), the two differ (differs), not writable (output), options that do not go together (usage).
+// `others`: options of the command line that are not for these. Errors: the print is damaged or missing (input), of a
+// newer version (unsupported), the two differ (differs), not writable (output), options that do not go together
+// (usage).
 Status check_print(const Options& app, const Program& program, const CheckRequest& request,
                    const std::string& lyr_path, const std::string& output_path, bool others);
 

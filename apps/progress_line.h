@@ -1,8 +1,8 @@
 // How far the work is, in the last line of a terminal; nothing where nobody can see it.
 //
 // Contract
-//  1. show() and clear() never wait: a terminal that takes nothing now (stopped by Ctrl-S, at the end of a connection that
-//     is gone) is passed by. Whoever tells how far a print is also hears what shall become of it.
+//  1. show() and clear() never wait: a terminal that takes nothing now (stopped by Ctrl-S, at the end of a connection
+//     that is gone) is passed by. Whoever tells how far a print is also hears what shall become of it.
 
 #pragma once
 

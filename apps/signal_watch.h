@@ -27,8 +27,9 @@ private:
     std::jthread thread_;
 };
 
-// Ends the program with this status in half a second, if nothing else has ended it by then: a terminal that was stopped, or
-// a pipe that nobody reads, would keep the last message of one that was asked to stop for as long as it likes.
+// Ends the program with this status in half a second, if nothing else has ended it by then: a terminal that was
+// stopped, or a pipe that nobody reads, would keep the last message of one that was asked to stop for as long as it
+// likes.
 void end_soon(ExitStatus status);
 
 }  // namespace lyr::command_line

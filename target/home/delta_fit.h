@@ -6,9 +6,9 @@
 // closed form. The length of the arms cannot be told from heights over a flat bed; measure it.
 //
 // Contract
-//  1. fit_delta() gives `printer` with radius_mm (all changed by the same), tower_angle_deg of the first two towers, and
-//     endstop_mm of all three, such that the touches come closest to z = 0. None: fewer than 7 touches, or touches that do
-//     not tell the frame.
+//  1. fit_delta() gives `printer` with radius_mm (all changed by the same), tower_angle_deg of the first two towers,
+//     and endstop_mm of all three, such that the touches come closest to z = 0. None: fewer than 7 touches, or
+//     touches that do not tell the frame.
 //  2. heights_of() are where the touches are with the printer's frame.
 
 #pragma once

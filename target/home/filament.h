@@ -1,8 +1,8 @@
 // Pushes filament by hand, or draws it out, in place of a print: to load it, and to measure steps_per_mm of axis e.
 //
 // Contract
-//  1. The tool is heated, the filament moved once it is warm, at careful_mm_s at the most, and the heater goes off. Nothing
-//     else moves, and nothing is homed.
+//  1. The tool is heated, the filament moved once it is warm, at careful_mm_s at the most, and the heater goes off.
+//     Nothing else moves, and nothing is homed.
 //  2. Refused (status machine) before anything is held: a tool that is there and gets no temperature, or one below its
 //     min_extrude_c or within headroom_c of the end of its range; a temperature for a tool that is not there.
 //  3. All guards watch throughout. One that fires, SIGINT, SIGTERM, SIGHUP and the emergency line bring the filament to

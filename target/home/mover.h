@@ -6,9 +6,9 @@
 //     the result says which closed, and where the motors were when each was first touched; those that closed as it came
 //     to rest are waited for until they have settled.
 //  2. Counts of a result are in microsteps since the begin of that run.
-//  3. Who asks for a stop (SIGINT, an emergency line, a client of the print) brings the machine to rest, twice at once, and
-//     ends with status stopped; asked before, nothing moves. After a run the motors are on, and all
-//     lines but enable inactive, as the executor of a print expects them.
+//  3. Who asks for a stop (SIGINT, an emergency line, a client of the print) brings the machine to rest, twice at
+//     once, and ends with status stopped; asked before, nothing moves. After a run the motors are on, and all lines
+//     but enable inactive, as the executor of a print expects them.
 //  4. On a board the lines are written by a thread of high priority, fed by another as in a print (run/event_flow.h), and
 //     this one watches; with virtual time all is done by this one, step by step.
 //  5. What the planner refuses is refused before anything moves. Edges are made while the machine moves, in bounded

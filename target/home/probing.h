@@ -3,8 +3,9 @@
 // Contract
 //  1. touch_bed() brings the probe over a place at a safe height, approaches fast and then `samples` times slowly, and
 //     gives where the head was, on the average, when the probe triggered. Afterwards the head is lift_mm above.
-//  2. Errors (status machine): a place that the probe cannot reach, a probe that is triggered before it goes down or stays
-//     so, that does not trigger down to reach_mm below the bed, or whose approaches differ by more than tolerance_mm.
+//  2. Errors (status machine): a place that the probe cannot reach, a probe that is triggered before it goes down or
+//     stays so, that does not trigger down to reach_mm below the bed, or whose approaches differ by more than
+//     tolerance_mm.
 
 #pragma once
 

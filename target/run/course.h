@@ -4,8 +4,8 @@
 // Contract
 //  1. follow() writes all events, and in between rests and makes trips as asked; false: stopped for good. It returns
 //     only then, or with an error.
-//  2. While `at_rest`, nothing is written but a trip; that is taken off when it has been made. The numbers are those at rest, but
-//     for the steps of a trip, which are told on the way.
+//  2. While `at_rest`, nothing is written but a trip; that is taken off when it has been made. The numbers are those
+//     at rest, but for the steps of a trip, which are told on the way.
 //  3. Nothing is allocated or locked, and a trip is read only.
 //  4. finish() writes the last event of the path, but rests before it, for trips, until `at_end` is taken back.
 

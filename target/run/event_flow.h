@@ -3,11 +3,11 @@
 //
 // Contract
 //  1. put() waits for as long as the ring is full, and no longer than until `finished`.
-//  2. drain() begins when the ring is full or holds all there will be; one that is not within the time of 3 is dry. Events
-//     come out a few at a time, so that there is room again early.
-//  3. A ring that has run dry is waited for, and what comes late by that is late as any other event (executor.h, 2 and 4).
-//     Where a stop was asked for, drain() ends after a tenth of a second of that, and at once if it was twice; in any case
-//     after some seconds, and ran_dry() is true then: heat must not stay on a head that stands.
+//  2. drain() begins when the ring is full or holds all there will be; one that is not within the time of 3 is dry.
+//     Events come out a few at a time, so that there is room again early.
+//  3. A ring that has run dry is waited for, and what comes late by that is late as any other event (executor.h, 2
+//     and 4). Where a stop was asked for, drain() ends after a tenth of a second of that, and at once if it was
+//     twice; in any case after some seconds, and ran_dry() is true then: heat must not stay on a head that stands.
 //  4. In drain() nothing is allocated or locked.
 
 #pragma once

@@ -1,7 +1,7 @@
-// What a file asks at a point of its path beside motion, of heaters, fans and of whoever tends the printer, and how it
-// gets there: the planning thread puts a mark into the events and the order into a queue; the real-time thread counts the marks that it reaches; the
-// thermal thread carries out as many orders. A mark may be a gate, at which the motion waits until its order is
-// done.
+// What a file asks at a point of its path beside motion, of heaters, fans and of whoever tends the printer, and how
+// it gets there: the planning thread puts a mark into the events and the order into a queue; the real-time thread
+// counts the marks that it reaches; the thermal thread carries out as many orders. A mark may be a gate, at which the
+// motion waits until its order is done.
 //
 // Contract
 //  1. The n-th mark belongs to the n-th order.

@@ -5,10 +5,11 @@
 //     nothing is held.
 //     Lines are held and PWM channels watched by a process of their own (line_keeper.h), so that a crash leaves no heater
 //     on; it must be called before any thread is started.
-//  2. tend() ticks until `finished`, on its own thread, and counts the ticks; a tick that takes long makes no others hurry.
+//  2. tend() ticks until `finished`, on its own thread, and counts the ticks; a tick that takes long makes no others
+//     hurry.
 //  3. The first guard that fires is told once, through `tripped`, from whichever thread finds it.
-//  4. switch_off() makes all lines of heaters and motors inactive and empties the heaters' PWM channels, for prints that were
-//     killed. Where a line cannot be had, as that of a print at work, nothing is touched.
+//  4. switch_off() makes all lines of heaters and motors inactive and empties the heaters' PWM channels, for prints
+//     that were killed. Where a line cannot be had, as that of a print at work, nothing is touched.
 
 #pragma once
 

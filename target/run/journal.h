@@ -1,14 +1,14 @@
-// How far a print has come, on the disk, so that it can go on after the power failed: a small file with two slots, written
-// in turn, each with a number that grows and a checksum. Whatever becomes of the slot that is being written, the other
-// one has the state before.
+// How far a print has come, on the disk, so that it can go on after the power failed: a small file with two slots,
+// written in turn, each with a number that grows and a checksum. Whatever becomes of the slot that is being written,
+// the other one has the state before.
 //
 // Contract
-//  1. read_journal() gives the latest entry that is whole. A write that was cut at any byte leaves that or the one before;
-//     a byte that was changed at any place loses the entry that it belongs to, and never makes another one of it. A file
-//     without a whole entry is an error, and one by another version of this program is told as such.
+//  1. read_journal() gives the latest entry that is whole. A write that was cut at any byte leaves that or the one
+//     before; a byte that was changed at any place loses the entry that it belongs to, and never makes another one of
+//     it. A file without a whole entry is an error, and one by another version of this program is told as such.
 //  2. Journal::write() returns when the entry is on the disk (fdatasync), and never while the other slot is at risk.
-//  3. A JournalWriter does so on a thread of its own, since a memory card may take seconds: post() returns at once, and of
-//     entries that wait for the disk only the latest is kept. An error is told once.
+//  3. A JournalWriter does so on a thread of its own, since a memory card may take seconds: post() returns at once,
+//     and of entries that wait for the disk only the latest is kept. An error is told once.
 //  4. identity_of() tells files apart by their length and the CRC-32C of all their bytes.
 
 #pragma once

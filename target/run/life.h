@@ -8,24 +8,25 @@
 //
 // Contract
 //  1. A pause brings the head to rest on its path; then the filament is drawn back, the head lifted and parked. What
-//     resumes goes back the same way. All in all no motor has moved then, but the extruder's by what a change of filament
-//     purges, and the path goes on with the event at which it was left. A pause that comes while the print goes on, and the
-//     other way round, is carried out next, unless the opposite comes before.
-//  2. Filament is moved only if the tool has min_extrude_c, before a resume it is heated and waited for. A tool that was set
-//     to less in a pause must be set to more before it. Heat that has not come within an hour is taken away, and the print
-//     rests on.
-//  3. A pause that lasts for longer than printer.toml says lets tool, bed and chamber go cold; one whose temperature is set
-//     then is warm for as long again.
-//  4. A cancel takes all heat away once no filament is under way, parks too, and ends by a request to stop; an emergency
-//     stop does so at once, and calls `cut`. At the end of the path the head parks as for a pause, at the heat that the file left; commands come too late then.
+//     resumes goes back the same way. All in all no motor has moved then, but the extruder's by what a change of
+//     filament purges, and the path goes on with the event at which it was left. A pause that comes while the print
+//     goes on, and the other way round, is carried out next, unless the opposite comes before.
+//  2. Filament is moved only if the tool has min_extrude_c, before a resume it is heated and waited for. A tool that
+//     was set to less in a pause must be set to more before it. Heat that has not come within an hour is taken away,
+//     and the print rests on.
+//  3. A pause that lasts for longer than printer.toml says lets tool, bed and chamber go cold; one whose temperature
+//     is set then is warm for as long again.
+//  4. A cancel takes all heat away once no filament is under way, parks too, and ends by a request to stop; an
+//     emergency stop does so at once, and calls `cut`. At the end of the path the head parks as for a pause, at the
+//     heat that the file left; commands come too late then.
 //  5. What cannot be done as things are is refused, and status().message says why.
 //  6. Commands take effect within the next tick; a speed above that of the file does with moves that are not planned yet.
-//  7. With a journal, each layer is noted there when the head begins it, where the head is parked, over a crooked bed once a
-//     second where it is in the layer, and how high it came to rest when it was stopped; and of the filament, how far it
-//     is drawn back while the head is away from the path or was stopped, and whether it was drawn out. A journal that
-//     cannot be written is told, and is no reason to stop. Before the head leaves the place where it rests, the journal
-//     has on the disk that it does: it never says a height that the head may have gone below. At the end of the path
-//     there is nothing to resume any more, and it goes.
+//  7. With a journal, each layer is noted there when the head begins it, where the head is parked, over a crooked bed
+//     once a second where it is in the layer, and how high it came to rest when it was stopped; and of the filament,
+//     how far it is drawn back while the head is away from the path or was stopped, and whether it was drawn out. A
+//     journal that cannot be written is told, and is no reason to stop. Before the head leaves the place where it
+//     rests, the journal has on the disk that it does: it never says a height that the head may have gone below. At
+//     the end of the path there is nothing to resume any more, and it goes.
 //  8. A print that resumes after it was cut off begins with heat, then the head is lifted, unless that was done. If the
 //     filament was drawn out it rests then for the next one, which is pushed in before the path begins.
 

@@ -14,11 +14,11 @@
 //     once; both end with status stopped.
 //     A processor that timing.cpu names and this board lacks is an error before anything is held.
 //  5. The pulses are those of the simulation, in the same order, with at least the same gaps.
-//  6. Commands of `control` are served as life.h says, by this thread; it tells there what the print is, to its end. While
-//     `before` is done they are what opening.h says; heaters are tended and inputs watched from then on.
-//  7. With a journal (journal.h) the print can be resumed after it was cut off, also by a signal or a guard, and also where
-//     a resumption ends before its path; one that is done or cancelled takes it away. A journal that cannot be written, or is another printer's, is a warning, before anything
-//     moves and in the status.
+//  6. Commands of `control` are served as life.h says, by this thread; it tells there what the print is, to its end.
+//     While `before` is done they are what opening.h says; heaters are tended and inputs watched from then on.
+//  7. With a journal (journal.h) the print can be resumed after it was cut off, also by a signal or a guard, and also
+//     where a resumption ends before its path; one that is done or cancelled takes it away. A journal that cannot be
+//     written, or is another printer's, is a warning, before anything moves and in the status.
 //  8. The watchdog is fed by this thread as long as the heaters' thread ticks; the init system is told how it goes.
 //  9. Buttons and sensors act as life.h says; input lines that cannot be read take heat and motion away, as a guard does.
 // 10. Where the head is afterwards is known unless the message says that its position is lost.

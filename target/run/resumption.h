@@ -2,14 +2,15 @@
 //
 // Contract
 //  1. A print goes on at the start of the layer that the head was in, in the state that the file says for it.
-//  2. find_resumption() refuses (status input) when there is no journal, when a print that is under way keeps it, or the file is not the one that it was written
-//     for: not by name, but by all its bytes; or the printer is another one, as printer_identity.h says.
-//  3. x and y of the head are those of start_mm: it was put there, or homed. Its height is that of the layer, or where the
-//     journal says that it was at rest; it begins lifted by pause.lift_mm.
-//  4. Over a crooked bed, that height counts from the bed's at start_mm. Of a head that was not at rest, it is that of the
-//     place that the journal has; without one, of where the layer begins.
-//  5. The filament begins as far drawn back as the journal says, which is not at all of a head that was on its path. Where it
-//     was drawn out, it is to be changed first.
+//  2. find_resumption() refuses (status input) when there is no journal, when a print that is under way keeps it, or
+//     the file is not the one that it was written for: not by name, but by all its bytes; or the printer is another
+//     one, as printer_identity.h says.
+//  3. x and y of the head are those of start_mm: it was put there, or homed. Its height is that of the layer, or
+//     where the journal says that it was at rest; it begins lifted by pause.lift_mm.
+//  4. Over a crooked bed, that height counts from the bed's at start_mm. Of a head that was not at rest, it is that
+//     of the place that the journal has; without one, of where the layer begins.
+//  5. The filament begins as far drawn back as the journal says, which is not at all of a head that was on its path.
+//     Where it was drawn out, it is to be changed first.
 //  6. open_journal() leaves a journal of another printer as it is, and then opens none. One that nobody can go on from is
 //     replaced. Both are noted. The file is read to its end, which heaters must not wait for.
 

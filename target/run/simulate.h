@@ -11,11 +11,12 @@
 //  3. within_limits() says that no axis ever deviated, in either sense, by more than half a step, what the
 //     axis moves at its highest speed in the nanosecond that times are rounded to, and a millionth of a
 //     step for rounding together; and that no pulse was shorter than the printer's file asks.
-//  4. Heaters are models behind mock lines (thermal/simulated_heat.h), unless `no_heat`, or the file asks for none. What a
-//     print is refused for is refused, but pauses that nobody would end. `faults` break heaters at their times; a guard
-//     that fires ends the simulation with its message (status machine) and the time.
-//  5. `script` gives commands at their times, one that is refused or comes after the end is a warning, and the pauses that the file asks for are made. A script that has ended while
-//     the print rests ends it. What the head does on trips is no part of 2.
+//  4. Heaters are models behind mock lines (thermal/simulated_heat.h), unless `no_heat`, or the file asks for none.
+//     What a print is refused for is refused, but pauses that nobody would end. `faults` break heaters at their
+//     times; a guard that fires ends the simulation with its message (status machine) and the time.
+//  5. `script` gives commands at their times, one that is refused or comes after the end is a warning, and the pauses
+//     that the file asks for are made. A script that has ended while the print rests ends it. What the head does on
+//     trips is no part of 2.
 //  6. With a trace path, the lines are written there as a wave file, which appears whole or not at all.
 
 #pragma once

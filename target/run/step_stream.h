@@ -24,8 +24,8 @@
 
 namespace lyr::run {
 
-// From this time on, of the steps or of the events, the head is in this layer, from 1, and goes at so many times the file's
-// speeds; the filament is drawn back so far, or about to be.
+// From this time on, of the steps or of the events, the head is in this layer, from 1, and goes at so many times the
+// file's speeds; the filament is drawn back so far, or about to be.
 struct LayerBegin {
     std::int64_t time_ns = 0;
     std::uint32_t layer = 0;

@@ -2,8 +2,8 @@
 // emergency line at the same time.
 //
 // Contract
-//  1. tick() takes about tick_ms. Once it has said why it is over (status machine, or stopped on request), all heaters are
-//     off.
+//  1. tick() takes about tick_ms. Once it has said why it is over (status machine, or stopped on request), all
+//     heaters are off.
 //  2. A thread that hangs at a sensor loses its heat, too. The destructor switches all off and lets go of it.
 
 #pragma once

@@ -4,8 +4,8 @@
 //  1. All guards watch; one that fires ends the tuning with its message (status machine). SIGINT, SIGTERM and SIGHUP
 //     end it with status stopped. However it ends, all heaters are off and released.
 //     So does the emergency line, and a heater that does not swing about the target for half an hour.
-//  2. A target below 30 °C, or within headroom_c of the end of the heater's range is refused, as is a heater that the printer does not
-//     have.
+//  2. A target below 30 °C, or within headroom_c of the end of the heater's range is refused, as is a heater that the
+//     printer does not have.
 
 #pragma once
 

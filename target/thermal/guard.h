@@ -10,10 +10,10 @@
 //  4. falling: while heating so, stray_c below the highest reading since heating began, the first settle_s
 //     left out, in which the sensor still tells of the time before.
 //  5. stray: once the target was reached, more than stray_c below it for longer than stray_time_s.
-//  6. stuck on: switched off for longer than settle_s, stray_c above the lowest reading since then. That mark
-//     follows upwards by stray_c in stray_time_s, and 0.05 °C/s at the most: what a neighbour warms slowly is not stuck. After heating it
-//     follows the rise of those settle_s, if that is more, less and less: a sensor that lags by half of gain_time_s still
-//     has to tell of it.
+//  6. stuck on: switched off for longer than settle_s, stray_c above the lowest reading since then. That mark follows
+//     upwards by stray_c in stray_time_s, and 0.05 °C/s at the most: what a neighbour warms slowly is not stuck.
+//     After heating it follows the rise of those settle_s, if that is more, less and less: a sensor that lags by half
+//     of gain_time_s still has to tell of it.
 //  7. frozen: a sensor's figure exactly the same for frozen_time_s while there is a target. Only the figure of a
 //     converter that is fine and has noise never stands; asking_power() makes all others move.
 //  Each fires in the first sample for which it is true, within a tick of its condition.
