@@ -175,6 +175,7 @@ Result<std::optional<run::Resumption>> resumption_of(const Arguments& arguments,
 }
 
 Status tell_resumable(const Arguments& arguments, const config::Printer& printer) {
+    if (Status cut_off = run::check_cut_off(printer, arguments.lyr_path); !cut_off) return cut_off;
     const Result<run::Resumption> found = run::find_resumption(printer, arguments.lyr_path);
     if (!found) return found.error();
     return tell(run::text_of(*found, arguments.lyr_path));
@@ -258,6 +259,9 @@ void tell_forgotten(const Arguments& arguments, const config::Printer& printer) 
 }
 
 Status print(const Arguments& arguments, const config::Printer& printer) {
+    if (arguments.resume && !arguments.dry_run)
+        if (Status cut_off = run::check_cut_off(printer, arguments.lyr_path); !cut_off)
+            return cut_off;
     tell_forgotten(arguments, printer);
     Result<std::optional<run::Resumption>> resumption = resumption_of(arguments, printer);
     if (!resumption) return resumption.error();

@@ -165,7 +165,7 @@ void Life::unload() {
         message_ = "filament is changed once the path has begun; the print rests";
         return;
     }
-    if (!can_push()) {
+    if (!keeps_warm()) {
         message_ = "the tool is too cold to move filament: heat it, or change it by hand";
         return;
     }
@@ -253,7 +253,7 @@ void Life::wait_for_heat() {
 void Life::heated() {
     if (is_to_lift_) return lift();
     if (awaits_filament_) return rest_for_filament();
-    if ((is_unloaded_ || drawn_back_mm_ > 0) && !can_push()) {
+    if ((is_unloaded_ && !keeps_warm()) || (drawn_back_mm_ > 0 && !can_push())) {
         message_ =
             formatted("the tool is too cold to push filament: set it to %g °C or more, then resume",
                       printer_.heaters[config::heater_tool]->min_extrude_c);
@@ -301,6 +301,13 @@ bool Life::can_push() const {
     const HeaterNow tool = desk_.now().heaters[config::heater_tool];
     const auto& settings = printer_.heaters[config::heater_tool];
     return !tool.is_present || !settings || tool.temperature_c >= settings->min_extrude_c;
+}
+
+bool Life::keeps_warm() const {
+    const HeaterNow tool = desk_.now().heaters[config::heater_tool];
+    const auto& settings = printer_.heaters[config::heater_tool];
+    return can_push() &&
+           (!tool.is_present || !settings || tool.target_c >= settings->min_extrude_c);
 }
 
 // It leaves the rest before the next one can begin: what is at rest then is so for this pause.
@@ -362,7 +369,9 @@ void Life::parked() {
     if (!cancels()) return;
     drop_heat();
     const bool stopped = control_.stop_requests().load() != 0;
-    ended_by_ = stopped ? "cancelled, and stopped" : "cancelled; the head is parked";
+    ended_by_ = stopped                  ? "cancelled, and stopped"
+                : course_.started.load() ? "cancelled; the head is parked"
+                                         : "cancelled";
     phase_ = Phase::over;
     ++control_.stop_requests();
 }

@@ -149,6 +149,8 @@ private:
     bool may_leave();
     bool make(std::span<const Leg> legs, const motion::Point& from);
     bool can_push() const;
+    // And stays so.
+    bool keeps_warm() const;
     bool changes_filament() const { return std::holds_alternative<ChangeFilament>(reason_); }
     bool cancels() const { return std::holds_alternative<Cancel>(reason_); }
     float pace() const;

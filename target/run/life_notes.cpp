@@ -55,6 +55,8 @@ double Life::drawn_back_now_mm() const {
 void Life::note() {
     if (!journal_) return;
     hear_of_journal();
+    // What stops at once leaves the journal as it is: it knows a head that stands.
+    if (phase_ == Phase::over) return;
     JournalEntry entry = noted_;
     entry.layer = layer_;
     entry.rest_nm = rest_nm();

@@ -79,8 +79,6 @@ std::string journal_path(const config::Printer& printer, const std::string& file
 
 Result<Resumption> find_resumption(const config::Printer& printer, const std::string& file) {
     const std::string path = journal_path(printer, file);
-    if (is_kept(path))
-        return refused("it is being printed now: `lyrctl status` says how far it is", file);
     const Result<std::optional<JournalEntry>> entry = read_journal(path);
     if (!entry) return entry.error();
     if (!*entry)
@@ -110,6 +108,11 @@ Result<Resumption> find_resumption(const config::Printer& printer, const std::st
     if (const auto rest_nm = resumption.entry.rest_nm)
         resumption.stopped_z_mm = static_cast<double>(*rest_nm) / nm_per_mm;
     return resumption;
+}
+
+Status check_cut_off(const config::Printer& printer, const std::string& file) {
+    if (!is_kept(journal_path(printer, file))) return Done{};
+    return refused("it is being printed now: `lyrctl status` says how far it is", file);
 }
 
 config::Printer lifted(const config::Printer& printer, const Resumption& resumption) {

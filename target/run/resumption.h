@@ -2,7 +2,7 @@
 //
 // Contract
 //  1. A print goes on at the start of the layer that the head was in, in the state that the file says for it.
-//  2. find_resumption() refuses (status input) when there is no journal, when a print that is under way keeps it, or
+//  2. find_resumption() refuses (status input) when there is no journal, or
 //     the file is not the one that it was written for: not by name, but by all its bytes; or the printer is another
 //     one, as printer_identity.h says.
 //  3. x and y of the head are those of start_mm: it was put there, or homed. Its height is that of the layer, or
@@ -36,6 +36,9 @@ struct Resumption {
 };
 
 Result<Resumption> find_resumption(const config::Printer& printer, const std::string& file);
+
+// Error (status input): a print that is under way keeps its journal.
+Status check_cut_off(const config::Printer& printer, const std::string& file);
 
 struct PrintJournal {
     std::optional<Journal> journal;

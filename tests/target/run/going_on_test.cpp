@@ -303,3 +303,48 @@ TEST_CASE("life 7: a stop on the way to the park place asked for filament that w
         if (!draws_out) CHECK(noted.drawn_back_um == 1'000);
     }
 }
+
+TEST_CASE("life 7: an emergency stop in a rest threw the height away that the journal knew") {
+    for (const bool is_on_path : {false, true}) {
+        CAPTURE(is_on_path);
+        Resumed print(true, "emergency");
+        begin_path(print);
+        if (!is_on_path) pause_path(print);
+        print.after(6, EmergencyStop{});
+        const JournalEntry noted = print.noted();
+        CHECK(noted.rest_nm == (is_on_path ? std::nullopt : std::optional(16'500'000)));
+        if (!is_on_path) CHECK(noted.drawn_back_um == 2'000);
+    }
+}
+
+TEST_CASE("life 2: filament was drawn out and pushed in while the tool that was off cooled down") {
+    const auto tell = [](Resumed& print, double tool_c, double target_c) {
+        HeatNow now;
+        now.reached = true;
+        now.heaters[config::heater_tool] = {true, tool_c, target_c};
+        print.desk.take();
+        print.desk.publish(now);
+    };
+    Resumed print(true, "cooling");
+    begin_path(print);
+    pause_path(print);
+    print.printer.heaters[config::heater_tool] =
+        config::generic_printer().heaters[config::heater_tool];
+    tell(print, 205, 0);
+    const PrintStatus cold = print.after(6, ChangeFilament{});
+    CHECK(cold.message.find("too cold to move filament") != std::string::npos);
+    CHECK(print.course.trip.load() == nullptr);
+    tell(print, 205, 210);
+    print.after(7, ChangeFilament{});
+    print.end_trip();
+    print.after(8);
+    print.after(9, Resume{});
+    tell(print, 205, 0);
+    const PrintStatus still = print.after(10);
+    CHECK(still.message.find("too cold to push filament") != std::string::npos);
+    CHECK(print.course.trip.load() == nullptr);
+    print.after(11, Resume{});
+    tell(print, 205, 210);
+    print.after(12);
+    CHECK(print.end_trip()[config::axis_e] > 0);
+}

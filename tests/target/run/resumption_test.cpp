@@ -176,11 +176,11 @@ TEST_CASE("resumption 2: a print that was under way was said to be cut off") {
     {
         const Result<Journal> kept = Journal::open(journal_path(printer, file));
         REQUIRE(kept.ok());
-        const Result<Resumption> refused = find_resumption(printer, file);
+        const Status refused = check_cut_off(printer, file);
         REQUIRE_FALSE(refused.ok());
         CHECK(refused.error().message.find("being printed now") != std::string::npos);
     }
-    CHECK(find_resumption(printer, file).ok());
+    CHECK(check_cut_off(printer, file).ok());
     std::filesystem::remove(journal_path(printer, file));
 }
 
