@@ -120,8 +120,8 @@ void Life::rest_for(Command reason) {
     if (phase_ != Phase::printing && cancels()) return refuse(reason, "it is being cancelled");
     if (has_finished_) return refuse(reason, "the path is done");
     // A change of filament that is under way is a pause, too.
-    const bool comes_to_rest = phase_ != Phase::printing && phase_ != Phase::resting;
-    if (comes_to_rest && changes_filament() && std::holds_alternative<Pause>(reason)) {
+    const bool is_on_its_way = phase_ != Phase::printing && phase_ != Phase::resting;
+    if (is_on_its_way && changes_filament() && std::holds_alternative<Pause>(reason)) {
         goes_on_ = false;
         return;
     }
@@ -297,17 +297,18 @@ void Life::advance() {
     if (phase_ == Phase::returning && !travels) return returned();
 }
 
-bool Life::can_push() const {
+bool Life::is_warm(double HeaterNow::*figure) const {
     const HeaterNow tool = desk_.now().heaters[config::heater_tool];
     const auto& settings = printer_.heaters[config::heater_tool];
-    return !tool.is_present || !settings || tool.temperature_c >= settings->min_extrude_c;
+    return !tool.is_present || !settings || tool.*figure >= settings->min_extrude_c;
+}
+
+bool Life::can_push() const {
+    return is_warm(&HeaterNow::temperature_c);
 }
 
 bool Life::keeps_warm() const {
-    const HeaterNow tool = desk_.now().heaters[config::heater_tool];
-    const auto& settings = printer_.heaters[config::heater_tool];
-    return can_push() &&
-           (!tool.is_present || !settings || tool.target_c >= settings->min_extrude_c);
+    return can_push() && is_warm(&HeaterNow::target_c);
 }
 
 // It leaves the rest before the next one can begin: what is at rest then is so for this pause.

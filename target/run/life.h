@@ -148,6 +148,8 @@ private:
     bool moves_filament() const;
     bool may_leave();
     bool make(std::span<const Leg> legs, const motion::Point& from);
+    // This figure of the tool is what filament needs, or there is none.
+    bool is_warm(double HeaterNow::*figure) const;
     bool can_push() const;
     // And stays so.
     bool keeps_warm() const;

@@ -172,11 +172,12 @@ Before open(const Watched& watched, const PrintJob& job, const Inspection& inspe
 void keep_height(const Resumption& resumption, double risen_mm, bool is_cancelled,
                  Journal& journal) {
     if (is_cancelled) return journal.remove();
+    if (risen_mm == 0) return;
     JournalEntry entry = resumption.entry;
     entry.rest_nm = std::llround((resumption.stopped_z_mm + risen_mm) * nm_per_mm);
     entry.place_um.reset();
     // What went wrong before is the message.
-    if (risen_mm != 0) (void)journal.write(entry);
+    (void)journal.write(entry);
 }
 
 // Until the real-time thread has ended.

@@ -30,25 +30,6 @@ thermal::Fault fault(double time_s, thermal::FaultKind kind, std::size_t contact
     return fault;
 }
 
-// Lines of a machine that is looked at after each write.
-class HighestPlace final : public gpio::GpioChip {
-public:
-    explicit HighestPlace(home::SimulatedMachine& machine)
-        : machine_(machine), highest_mm_(machine.head().z) {}
-    std::size_t line_count() const override { return machine_.chip().line_count(); }
-    Status write(gpio::LineMask changed, gpio::LineMask levels) override {
-        Status written = machine_.chip().write(changed, levels);
-        highest_mm_ = std::max(highest_mm_, machine_.head().z);
-        return written;
-    }
-    Status release() override { return machine_.chip().release(); }
-    double highest_mm() const { return highest_mm_; }
-
-private:
-    home::SimulatedMachine& machine_;
-    double highest_mm_;
-};
-
 }  // namespace
 
 TEST_CASE("homing 2: a head at the upper endstop of z was lifted into it first") {

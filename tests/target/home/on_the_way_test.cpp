@@ -17,24 +17,6 @@ using config::Kinematics;
 
 namespace {
 
-class HighestPlace final : public gpio::GpioChip {
-public:
-    explicit HighestPlace(home::SimulatedMachine& machine)
-        : machine_(machine), highest_mm_(machine.head().z) {}
-    std::size_t line_count() const override { return machine_.chip().line_count(); }
-    Status write(gpio::LineMask changed, gpio::LineMask levels) override {
-        Status written = machine_.chip().write(changed, levels);
-        highest_mm_ = std::max(highest_mm_, machine_.head().z);
-        return written;
-    }
-    Status release() override { return machine_.chip().release(); }
-    double highest_mm() const { return highest_mm_; }
-
-private:
-    home::SimulatedMachine& machine_;
-    double highest_mm_;
-};
-
 std::vector<motion::Move> along_x(const config::Printer& printer, double way_mm,
                                   double speed_mm_s) {
     const auto& [x, y, z] = printer.start_mm;

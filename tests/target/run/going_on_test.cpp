@@ -30,23 +30,12 @@ bool is_cold(Resumed& print) {
     return wish.standby[config::heater_tool] && wish.standby[config::heater_bed];
 }
 
-// Rests at the park place, the filament drawn out.
-void unload(Resumed& print) {
-    begin_path(print);
-    pause_path(print);
-    print.after(6, ChangeFilament{});
-    print.end_trip();
-    REQUIRE(print.after(7).state == PrintState::paused);
-}
-
 }  // namespace
 
 TEST_CASE("life 4: a cancel while filament was pushed in let the tool go cold and pushed on") {
     Resumed print(true, "cancel_loading");
-    unload(print);
-    print.after(8, Resume{});
-    print.heated(9);
-    REQUIRE(print.course.trip.load() != nullptr);
+    rest(print, true);
+    set_out(print);
     CHECK(print.after(10, Cancel{}).state == PrintState::stopping);
     CHECK_FALSE(is_cold(print));
     // No way back to the part.
@@ -93,12 +82,7 @@ TEST_CASE("life 2: filament was pushed with a tool that the file had let go cold
     for (const bool is_changed : {false, true}) {
         CAPTURE(is_changed);
         Resumed print(true, "cold_load");
-        if (is_changed) {
-            unload(print);
-        } else {
-            begin_path(print);
-            pause_path(print);
-        }
+        rest(print, is_changed);
         print.printer.heaters[config::heater_tool] =
             config::generic_printer().heaters[config::heater_tool];
         print.after(8, Resume{});
@@ -164,7 +148,7 @@ TEST_CASE("life: a print was resumed while its sensor said that there is no fila
     Resumed print(true, "no_filament");
     bool is_there = false;
     print.life.lacks_filament = [&] { return !is_there; };
-    unload(print);
+    rest(print, true);
     const PrintStatus refused = print.after(8, Resume{});
     CHECK(refused.state == PrintState::paused);
     CHECK(refused.message.find("there is none") != std::string::npos);
@@ -221,16 +205,8 @@ TEST_CASE("life 7: a stop while filament was pushed in said in the journal that 
     for (const bool is_changed : {false, true}) {
         CAPTURE(is_changed);
         Resumed print(true, "stopped_pushing");
-        begin_path(print);
-        pause_path(print);
-        if (is_changed) {
-            print.after(6, ChangeFilament{});
-            print.end_trip();
-            print.after(7);
-        }
-        print.after(8, Resume{});
-        print.heated(9);
-        REQUIRE(print.course.trip.load() != nullptr);
+        rest(print, is_changed);
+        set_out(print);
         // A signal, half a millimetre on.
         const double steps_per_mm = print.printer.axes[config::axis_e].steps_per_mm;
         print.course.trip_steps[config::axis_e] += std::llround(0.5 * steps_per_mm);
@@ -264,9 +240,8 @@ TEST_CASE("life 1: a pause took a change of filament back that was under way") {
 
 TEST_CASE("life 1: a pause on the way back from a change of filament draws nothing out") {
     Resumed print(true, "not_again");
-    unload(print);
-    print.after(8, Resume{});
-    print.heated(9);
+    rest(print, true);
+    set_out(print);
     print.end_trip();
     print.heated(10);
     print.after(11, Pause{});

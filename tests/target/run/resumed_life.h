@@ -99,4 +99,21 @@ inline void pause_path(Resumed& print) {
     REQUIRE(print.after(5).state == PrintState::paused);
 }
 
+// At the park place, also with the filament drawn out.
+inline void rest(Resumed& print, bool is_changed) {
+    begin_path(print);
+    pause_path(print);
+    if (!is_changed) return;
+    print.after(6, ChangeFilament{});
+    print.end_trip();
+    REQUIRE(print.after(7).state == PrintState::paused);
+}
+
+// From there, warm: the next trip is under way.
+inline void set_out(Resumed& print) {
+    print.after(8, Resume{});
+    print.heated(9);
+    REQUIRE(print.course.trip.load() != nullptr);
+}
+
 }  // namespace lyr::tests

@@ -209,14 +209,8 @@ TEST_CASE(
          {Command(Pause{}), Command(ChangeFilament{}), Command(Cancel{})}) {
         CAPTURE(command.index());
         Resumed print(true, "pushed_in");
-        begin_path(print);
-        pause_path(print);
-        print.after(6, ChangeFilament{});
-        print.end_trip();
-        print.after(7);
-        print.after(8, Resume{});
-        print.heated(9);
-        REQUIRE(print.course.trip.load() != nullptr);
+        rest(print, true);
+        set_out(print);
         print.after(10, command);
         CHECK(print.end_trip()[config::axis_z] == 0);
         const PrintStatus now = print.after(11);
