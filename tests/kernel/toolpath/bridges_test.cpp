@@ -8,32 +8,25 @@
 
 #include "kernel/region/regions.h"
 #include "kernel/toolpath/offset.h"
+#include "kernel/toolpath/sizes.h"
 #include "kernel/toolpath/skins.h"
+#include "kernel/toolpath/stacks.h"
 
 using namespace lyr;
 using namespace lyr::testing;
 
 namespace {
 
-constexpr double spacing_mm = 0.4, width_mm = 0.45, allowed_mm = 1e-4;
+constexpr double lines_apart_mm = 0.4;
 
-// Of directions: a half turn makes no difference.
-double apart(double a, double b) {
-    const double turn = std::abs(a - b) / pi;
-    return pi * std::abs(turn - std::round(turn));
-}
-
-double after(double angle, const Motion& motion) {
-    return motion.angle_rad + (motion.mirrored ? -angle : angle);
-}
-
-const std::vector<Motion> motions{
+const std::vector<Motion> bridge_motions{
     {}, {0.4, {3, -7}}, {pi / 2, {0, 1}}, {1.1, {-20, 5}, true}, {-0.02, {0, 0}, true}};
 
 void check_angle(const Contours& bridge, const Contours& below, double expected_rad) {
-    for (const Motion& motion : motions) {
+    for (const Motion& motion : bridge_motions) {
         CAPTURE(motion.angle_rad);
-        const auto angle = bridge_angle(moved(bridge, motion), moved(below, motion), spacing_mm);
+        const auto angle =
+            bridge_angle(moved(bridge, motion), moved(below, motion), lines_apart_mm);
         REQUIRE(angle.has_value());
         CHECK(*angle >= 0);
         CHECK(*angle < pi);
@@ -81,9 +74,9 @@ TEST_CASE("bridge: held on three sides, across from the one to its opposite") {
 
 TEST_CASE("bridge: over a slot with round ends across it") {
     const Contours below{rectangle(-10, -10, 40, 20), reversed(slot(0, 0, 30, 6))};
-    for (const Motion& motion : motions) {
+    for (const Motion& motion : bridge_motions) {
         const auto angle = bridge_angle(moved(Contours{slot(-0.4, -0.4, 30.4, 6.4)}, motion),
-                                        moved(below, motion), spacing_mm);
+                                        moved(below, motion), lines_apart_mm);
         REQUIRE(angle.has_value());
         CHECK(apart(*angle, after(pi / 2, motion)) < 1e-6);
     }
@@ -91,22 +84,23 @@ TEST_CASE("bridge: over a slot with round ends across it") {
 
 TEST_CASE("bridge 3: what is held on one side only, or nowhere, is an overhang") {
     const Contours wall{rectangle(-5, 0, 0, 10)};
-    for (const Motion& motion : motions) {
+    for (const Motion& motion : bridge_motions) {
         const Contours below = moved(wall, motion);
         CHECK(!bridge_angle(moved(Contours{rectangle(-0.4, 0.5, 8, 9.5)}, motion), below,
-                            spacing_mm));
-        CHECK(!bridge_angle(moved(Contours{rectangle(3, 0.5, 8, 9.5)}, motion), below, spacing_mm));
+                            lines_apart_mm));
+        CHECK(!bridge_angle(moved(Contours{rectangle(3, 0.5, 8, 9.5)}, motion), below,
+                            lines_apart_mm));
     }
     // A flange all round what holds it.
     const Contours ring{FullCircle{{0, 0}, 12, true}, FullCircle{{0, 0}, 7, false}};
-    CHECK(!bridge_angle(ring, Contours{FullCircle{{0, 0}, 7.4, true}}, spacing_mm));
+    CHECK(!bridge_angle(ring, Contours{FullCircle{{0, 0}, 7.4, true}}, lines_apart_mm));
 }
 
 TEST_CASE("bridge: a ring between a post and a wall is held at both ends of most lines") {
     const Contours ring{FullCircle{{0, 0}, 12.4, true}, FullCircle{{0, 0}, 3.6, false}};
     const Contours below{rectangle(-20, -20, 20, 20), FullCircle{{0, 0}, 12, false},
                          FullCircle{{0, 0}, 4, true}};
-    CHECK(bridge_angle(ring, below, spacing_mm).has_value());
+    CHECK(bridge_angle(ring, below, lines_apart_mm).has_value());
 }
 
 TEST_CASE("bridge: a full circle has an extent across the line to its farthest point") {
@@ -114,7 +108,7 @@ TEST_CASE("bridge: a full circle has an extent across the line to its farthest p
     const Contours below{rectangle(-20, -20, 20, 20), FullCircle{{1, 2}, 5, false}};
     for (const double radius : {5.0, 5.4, 1e-3}) {
         const Contours bridge{FullCircle{{1, 2}, radius, true}};
-        CHECK(bridge_angle(bridge, below, spacing_mm).has_value() == (radius > 4));
+        CHECK(bridge_angle(bridge, below, lines_apart_mm).has_value() == (radius > 4));
     }
     Path lens{{-4, 2}, {}};
     lens.segments.push_back(arc_with_sweep({-4, 2}, {6, 2}, pi / 2));
@@ -125,19 +119,19 @@ TEST_CASE("bridge: a full circle has an extent across the line to its farthest p
 TEST_CASE("bridge: roofs and table tops that skins find are hatched across the air") {
     const Contours top{rectangle(0, 0, 30, 20)};
     const Contours cavity{rectangle(0, 0, 30, 20), reversed(rectangle(8, 5, 22, 15))};
-    const auto over_cavity = bridges_over(skins_over(cavity, top).bridge, cavity, spacing_mm);
+    const auto over_cavity = bridges_over(skins_over(cavity, top).bridge, cavity, lines_apart_mm);
     REQUIRE(over_cavity.size() == 1);
     REQUIRE(over_cavity[0].angle_rad.has_value());
     CHECK(apart(*over_cavity[0].angle_rad, pi / 2) < 1e-6);
 
     const Contours walls{rectangle(0, 0, 30, 4), rectangle(0, 16, 30, 20)};
-    const auto over_walls = bridges_over(skins_over(walls, top).bridge, walls, spacing_mm);
+    const auto over_walls = bridges_over(skins_over(walls, top).bridge, walls, lines_apart_mm);
     REQUIRE(over_walls.size() == 1);
     REQUIRE(over_walls[0].angle_rad.has_value());
     CHECK(apart(*over_walls[0].angle_rad, pi / 2) < 1e-6);
 
     const Contours post{rectangle(0, 0, 10, 20)};
-    const auto over_post = bridges_over(skins_over(post, top).bridge, post, spacing_mm);
+    const auto over_post = bridges_over(skins_over(post, top).bridge, post, lines_apart_mm);
     REQUIRE(over_post.size() == 1);
     CHECK(!over_post[0].angle_rad.has_value());
 }
@@ -146,7 +140,7 @@ TEST_CASE("bridges: every part has its own direction, none is lost") {
     const Contours below{rectangle(-5, -5, 60, 30), reversed(rectangle(0, 0, 20, 8)),
                          reversed(rectangle(30, 0, 38, 20))};
     const Contours bridges{rectangle(-0.4, -0.4, 20.4, 8.4), rectangle(29.6, -0.4, 38.4, 20.4)};
-    const auto found = bridges_over(bridges, below, spacing_mm);
+    const auto found = bridges_over(bridges, below, lines_apart_mm);
     REQUIRE(found.size() == 2);
     CHECK(found[0].contours == Contours{bridges[0]});
     CHECK(found[1].contours == Contours{bridges[1]});
@@ -157,9 +151,9 @@ TEST_CASE("bridges: every part has its own direction, none is lost") {
 TEST_CASE("bridges: nothing, and numbers that are not finite, have no direction") {
     const Contours plate{rectangle(0, 0, 10, 10)};
     const Contours broken{FullCircle{{0, 0}, std::numeric_limits<double>::infinity(), true}};
-    CHECK(bridges_over({}, plate, spacing_mm).empty());
-    CHECK(!bridge_angle({}, plate, spacing_mm));
-    CHECK(!bridge_angle(broken, plate, spacing_mm));
-    CHECK(!bridge_angle(plate, broken, spacing_mm));
-    REQUIRE(bridges_over(plate, broken, spacing_mm).size() == 1);
+    CHECK(bridges_over({}, plate, lines_apart_mm).empty());
+    CHECK(!bridge_angle({}, plate, lines_apart_mm));
+    CHECK(!bridge_angle(broken, plate, lines_apart_mm));
+    CHECK(!bridge_angle(plate, broken, lines_apart_mm));
+    REQUIRE(bridges_over(plate, broken, lines_apart_mm).size() == 1);
 }

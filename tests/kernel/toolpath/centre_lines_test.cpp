@@ -8,17 +8,16 @@
 #include "kernel/toolpath/fills.h"
 #include "kernel/toolpath/middle_path.h"
 #include "kernel/toolpath/offset.h"
+#include "kernel/toolpath/sizes.h"
 
 using namespace lyr;
 using namespace lyr::testing;
 
 namespace {
 
-constexpr double allowed_mm = 0.00125;
-
 CentreLines lines_in(const Contours& region) {
     return centre_lines(region,
-                        {.min_width_mm = 0.2, .max_width_mm = 0.9, .allowed_mm = allowed_mm});
+                        {.min_width_mm = 0.2, .max_width_mm = 0.9, .allowed_mm = wall_allowed_mm});
 }
 
 Contours moved_region(const Contours& region, const Motion& motion) {
@@ -98,7 +97,7 @@ double covered_share(const Contours& region, const CentreLines& made) {
             if (boundary.winding(point) != 1) continue;
             ++all;
             covered += std::any_of(parts.begin(), parts.end(), [&](const PrintedPart& part) {
-                return distance_mm(part, point) <= part.width_mm / 2 + allowed_mm;
+                return distance_mm(part, point) <= part.width_mm / 2 + wall_allowed_mm;
             });
         }
     return covered / all;
@@ -110,12 +109,9 @@ void check_fills(const Contours& region, double least_share) {
     const double area = total_area(region);
     CHECK(printed_mm2(made) + made.left_out_mm2 + made.beside_mm2 ==
           doctest::Approx(area).epsilon(0.03));
-    CHECK(outside_mm(region, made) <= allowed_mm + width_step_mm / 2);
+    CHECK(outside_mm(region, made) <= wall_allowed_mm + width_step_mm / 2);
     CHECK(covered_share(region, made) + made.left_out_mm2 / area >= least_share);
 }
-
-const Motion motions[] = {
-    {}, {0.3, {1, 2}}, {2.1, {-40, 7}, true}, {pi / 2, {0, 0}}, {-1, {100, 80}, true}};
 
 // A rib of which one end lies at the origin.
 Contours rib(double angle_rad, double length_mm, double width_mm) {
@@ -127,13 +123,13 @@ Contours rib(double angle_rad, double length_mm, double width_mm) {
 Contours star(std::span<const double> angles_rad, double width_mm) {
     std::vector<Contours> ribs;
     for (const double angle : angles_rad) ribs.push_back(rib(angle, 8, width_mm));
-    return unite_all(ribs, allowed_mm).contours;
+    return unite_all(ribs, wall_allowed_mm).contours;
 }
 
 }  // namespace
 
 TEST_CASE("centre lines 2: a rib with parallel sides is one line of its width") {
-    for (const Motion& motion : motions)
+    for (const Motion& motion : rib_motions)
         for (const double width : {0.25, 0.6, 0.85}) {
             const Contours region = moved_region({rectangle(0, 0, 20, width)}, motion);
             const CentreLines made = lines_in(region);
@@ -154,7 +150,7 @@ TEST_CASE("centre lines 2: a rib is one line also where its sides are cut into m
     for (int i = 0; i <= 10; ++i) corners.push_back({2.0 * i, 0});
     for (int i = 10; i >= 0; --i)
         corners.push_back({i == 0 || i == 10 ? 2.0 * i : 2 * i + 0.3, 0.6});
-    for (const Motion& motion : motions) {
+    for (const Motion& motion : rib_motions) {
         const CentreLines made = lines_in(moved_region({polygon(corners)}, motion));
         CHECK(made.unresolved == 0);
         REQUIRE(made.strands.size() == 1);
@@ -185,7 +181,7 @@ TEST_CASE("centre lines 2: a bent rib is lines and an arc about the bend's centr
     bent.segments = {
         {{10, 0}},   arc_with_sweep({10, 0}, {13, 3}, pi / 2),      {{13, 9}},  {{12.4, 9}},
         {{12.4, 3}}, arc_with_sweep({12.4, 3}, {10, 0.6}, -pi / 2), {{0, 0.6}}, {{0, 0}}};
-    for (const Motion& motion : motions) {
+    for (const Motion& motion : rib_motions) {
         const Contours region = moved_region({bent}, motion);
         const CentreLines made = lines_in(region);
         CHECK(made.unresolved == 0);
@@ -213,7 +209,7 @@ TEST_CASE("centre lines 3: a slot's line ends in the centres of its round ends")
 
 TEST_CASE("centre lines 2: along a wedge widths are right within the step") {
     const Contours wedge{polygon({{0, 0}, {20, 0.15}, {20, 0.45}, {0, 0.6}})};
-    for (const Motion& motion : motions) {
+    for (const Motion& motion : rib_motions) {
         const Contours region = moved_region(wedge, motion);
         const CentreLines made = lines_in(region);
         REQUIRE(made.strands.size() == 1);
@@ -224,7 +220,7 @@ TEST_CASE("centre lines 2: along a wedge widths are right within the step") {
             for (const double at : {0.0, 0.5, 1.0}) {
                 const double width =
                     2 * boundary.distance_mm(point_at(part.start, part.segment, at), 1);
-                CHECK(std::abs(part.width_mm - width) <= width_step_mm / 2 + allowed_mm);
+                CHECK(std::abs(part.width_mm - width) <= width_step_mm / 2 + wall_allowed_mm);
             }
         CHECK(printed_mm2(made) == doctest::Approx(9).epsilon(0.02));
     }
@@ -242,7 +238,7 @@ TEST_CASE("centre lines: ribs, rings and what they meet in are filled and not le
         star(std::array{0.2, 1.5, 2.5, 4.0, 5.1}, 0.45),
     };
     for (const Contours& shape : shapes)
-        for (const Motion& motion : {motions[0], motions[2]})
+        for (const Motion& motion : {rib_motions[0], rib_motions[2]})
             check_fills(moved_region(shape, motion), 0.97);
 }
 
@@ -251,7 +247,7 @@ TEST_CASE("centre lines: a C of arcs and a gap between an arc and a line are fil
     Path c_shape{a,
                  {arc_with_sweep(a, b, 3 * pi / 2), {c}, arc_with_sweep(c, d, -3 * pi / 2), {a}}};
     Path cap{{-5, 0}, {{{5, 0}}, {{5, 0.3}}, {{-5, 0.3}, 0.4}, {{-5, 0}}}};
-    for (const Motion& motion : motions) {
+    for (const Motion& motion : rib_motions) {
         const Contours region = moved_region({c_shape}, motion);
         check_fills(region, 0.97);
         const CentreLines made = lines_in(region);
@@ -279,14 +275,14 @@ TEST_CASE("centre lines: random ribs that meet, and random frames") {
         for (int i = 0; i < count; ++i)
             ribs.push_back(rib(2 * pi * (i + random.within(0, 0.4)) / count, random.within(3, 6),
                                random.within(0.3, 0.7)));
-        check_fills(unite_all(ribs, allowed_mm).contours, 0.96);
+        check_fills(unite_all(ribs, wall_allowed_mm).contours, 0.96);
     }
     for (unsigned seed = 0; seed < 40; ++seed) {
         CAPTURE(seed);
         Random random(seed);
         const Path ring = random_ring(random, {0, 0}, 5);
-        const OffsetResult inner = offset(
-            Contours{ring}, {.distance_mm = -random.within(0.3, 0.8), .allowed_mm = allowed_mm});
+        const OffsetResult inner = offset(Contours{ring}, {.distance_mm = -random.within(0.3, 0.8),
+                                                           .allowed_mm = wall_allowed_mm});
         Contours frame{ring};
         for (const Contour& contour : inner.contours) frame.push_back(reversed(contour));
         check_fills(frame, 0.97);
@@ -329,7 +325,7 @@ TEST_CASE("centre lines 5: a part that is no longer than wide gets a short stran
         const CentreLines made = lines_in(region);
         REQUIRE(made.strands.size() == 1);
         CHECK(made.strands[0].width_mm == doctest::Approx(0.3));
-        CHECK(outside_mm(region, made) <= allowed_mm);
+        CHECK(outside_mm(region, made) <= wall_allowed_mm);
     }
     const CentreLines small = lines_in({FullCircle{{1, 2}, 0.109, true}});
     CHECK(small.strands.empty());
@@ -341,8 +337,8 @@ TEST_CASE("centre lines 5: a part that is no longer than wide gets a short stran
 
 TEST_CASE("centre lines 6: nothing comes of nothing, and what is invalid is counted") {
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    CHECK(centre_lines({}, {.allowed_mm = allowed_mm}).strands.empty());
-    CHECK(centre_lines({}, {.allowed_mm = allowed_mm}).unresolved == 0);
+    CHECK(centre_lines({}, {.allowed_mm = wall_allowed_mm}).strands.empty());
+    CHECK(centre_lines({}, {.allowed_mm = wall_allowed_mm}).unresolved == 0);
     CHECK(lines_in({rectangle(0, 0, nan, 1)}).unresolved == 1);
     CHECK(lines_in({FullCircle{{0, 0}, -1, true}}).unresolved == 1);
     const Contours plate{rectangle(0, 0, 10, 0.5)};
@@ -392,12 +388,12 @@ TEST_CASE(
               {{1.1560933836621261, 0.42853981636606042}, 0.08506640863496788},
               {{1.5714601836602546, 0.42853981636606042}}}}};
     for (const Contours& shape : {almost_disc, flat_side})
-        for (const Motion& motion : motions) {
+        for (const Motion& motion : rib_motions) {
             const Contours region = moved_region(shape, motion);
             const CentreLines made = lines_in(region);
             CHECK(made.unresolved == 0);
             CHECK(made.strands.size() >= 1);
-            CHECK(outside_mm(region, made) <= allowed_mm + width_step_mm / 2);
+            CHECK(outside_mm(region, made) <= wall_allowed_mm + width_step_mm / 2);
         }
 }
 
@@ -411,7 +407,7 @@ TEST_CASE("centre lines: a ring whose outside steps by nanometres where it start
                               {{43.999886933064261, 18.967193254176603}}}},
                         FullCircle{{43.99999999991843, 44}, 23.354701094848604, false}};
     const CentreLines made =
-        centre_lines(ring, {.min_width_mm = 0.5, .max_width_mm = 2, .allowed_mm = allowed_mm});
+        centre_lines(ring, {.min_width_mm = 0.5, .max_width_mm = 2, .allowed_mm = wall_allowed_mm});
     CHECK(made.unresolved == 0);
     REQUIRE(made.strands.size() == 1);
     CHECK(is_closed(made.strands[0]));
@@ -441,7 +437,7 @@ TEST_CASE("middle path: through points that run to and fro goes no circle of the
             point.radius_mm = 0.2 + 0.05 * static_cast<double>(i);
             stations[0].push_back({point, at_mm, at_mm});
         }
-        const Strand strand = strand_along(stations, false, {0.8, 0.02}, allowed_mm);
+        const Strand strand = strand_along(stations, false, {0.8, 0.02}, wall_allowed_mm);
         CHECK(length_mm(strand.path) < 1.2 * at_mm);
         for (const Segment& segment : std::get<Path>(strand.path).segments)
             CHECK(segment.end.norm() < 1.1);

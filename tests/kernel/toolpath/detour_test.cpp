@@ -7,13 +7,13 @@
 #include <limits>
 
 #include "kernel/region/regions.h"
+#include "kernel/toolpath/sizes.h"
 
 using namespace lyr;
 using namespace lyr::testing;
 
 namespace {
 
-constexpr double allowed_mm = 0.005;
 constexpr double any_length_mm = 1e9;
 
 double length_of(const Point2& from, const Travel& travel, const Point2& to) {
@@ -27,7 +27,7 @@ double length_of(const Point2& from, const Travel& travel, const Point2& to) {
 }
 
 // A square with holes that keep clear of each other.
-Contours plate(Random& random, int holes, double size_mm, bool with_circles = true) {
+Contours plate_with_holes(Random& random, int holes, double size_mm, bool with_circles = true) {
     Contours region{rectangle(0, 0, size_mm, size_mm)};
     std::vector<FullCircle> taken;
     for (int i = 0; i < 20 * holes && static_cast<int>(taken.size()) < holes; ++i) {
@@ -85,7 +85,7 @@ void check_inside(const Contours& region, const Point2& from, const Travel& trav
         for (int k = 0; k <= samples; ++k) {
             const Point2 point = at + k / double{samples} * (next - at);
             if (winding(region, point) > 0) continue;
-            CHECK(distance_to(region, point) < allowed_mm);
+            CHECK(distance_to(region, point) < infill_allowed_mm);
         }
         at = next;
     }
@@ -160,8 +160,8 @@ TEST_CASE("detour 1: ways in random plates stay inside") {
     Random random(1);
     for (int i = 0; i < 12; ++i) {
         const Contours region =
-            i % 2 == 0 ? plate(random, 25, 60) : random_region(random, {5, 5}, 30);
-        const Detours detours(region, allowed_mm, any_length_mm);
+            i % 2 == 0 ? plate_with_holes(random, 25, 60) : random_region(random, {5, 5}, 30);
+        const Detours detours(region, infill_allowed_mm, any_length_mm);
         for (int k = 0; k < 25; ++k) {
             const Point2 from = point_inside(region, random), to = point_inside(region, random);
             const Travel travel = detours.way(from, to);
@@ -176,8 +176,8 @@ TEST_CASE("detour 3: within half a percent of the shortest on average, in random
     double sum = 0;
     int count = 0;
     for (int i = 0; i < 6; ++i) {
-        const Contours region = plate(random, 12, 60);
-        const Detours detours(region, allowed_mm, any_length_mm);
+        const Contours region = plate_with_holes(random, 12, 60);
+        const Detours detours(region, infill_allowed_mm, any_length_mm);
         for (int k = 0; k < 12; ++k) {
             const Point2 from = point_inside(region, random), to = point_inside(region, random);
             const double ratio =
@@ -194,7 +194,7 @@ TEST_CASE("detour 3: within half a percent of the shortest on average, in random
 
 TEST_CASE("detour 2: straight where that is inside, and along the tangents of a hole where not") {
     const Contours region{rectangle(-50, -50, 50, 50), FullCircle{{0, 0}, 10, false}};
-    const Detours detours(region, allowed_mm, any_length_mm);
+    const Detours detours(region, infill_allowed_mm, any_length_mm);
     const Travel beside = detours.way({-30, 11}, {30, 11});
     CHECK(beside.via.empty());
     CHECK(!beside.crosses);
@@ -214,7 +214,7 @@ TEST_CASE("detour 2: no longer than what it may take more") {
     Random random(3);
     int crossing = 0;
     for (const double extra : {5.0, 20.0, 60.0}) {
-        const Detours detours(region, allowed_mm, extra);
+        const Detours detours(region, infill_allowed_mm, extra);
         for (int i = 0; i < 60; ++i) {
             const Point2 from = point_inside(region, random), to = point_inside(region, random);
             const Travel travel = detours.way(from, to);
@@ -237,11 +237,11 @@ TEST_CASE("detour 2: ways ran on the walls that they go around, with room beside
     Random random(6);
     std::size_t bends = 0, clear = 0;
     for (int i = 0; i < 12; ++i) {
-        const Contours region = plate(random, 10, 60);
+        const Contours region = plate_with_holes(random, 10, 60);
         const Boundary boundary(region);
         for (const double extra : {2.0, 20.0}) {
-            const Detours detours(region, allowed_mm, extra, clear_mm);
-            const Detours tight(region, allowed_mm, extra);
+            const Detours detours(region, infill_allowed_mm, extra, clear_mm);
+            const Detours tight(region, infill_allowed_mm, extra);
             for (int k = 0; k < 25; ++k) {
                 const Point2 from = point_inside(region, random), to = point_inside(region, random);
                 const Travel travel = detours.way(from, to);
@@ -263,11 +263,12 @@ TEST_CASE("detour: turned and mirrored regions have ways as long") {
     Random random(4);
     for (int i = 0; i < 10; ++i) {
         // Bends around a full circle are where it starts, wherever that is.
-        const Contours region = i == 0 ? Contours{comb(5)} : plate(random, 15, 60, false);
+        const Contours region =
+            i == 0 ? Contours{comb(5)} : plate_with_holes(random, 15, 60, false);
         const Motion motion{random.within(-3, 3), {random.within(-90, 90), 20}, random.coin()};
-        const Detours detours(region, allowed_mm, any_length_mm);
+        const Detours detours(region, infill_allowed_mm, any_length_mm);
         const Contours other_region = moved(region, motion);
-        const Detours other(other_region, allowed_mm, any_length_mm);
+        const Detours other(other_region, infill_allowed_mm, any_length_mm);
         for (int k = 0; k < 20; ++k) {
             const Point2 from = point_inside(region, random), to = point_inside(region, random);
             const double length = length_of(from, detours.way(from, to), to);
@@ -281,7 +282,7 @@ TEST_CASE("detour: turned and mirrored regions have ways as long") {
 TEST_CASE("detour 3: between separate parts, and from outside, ways go straight and cross") {
     const Contours region{rectangle(0, 0, 10, 10), rectangle(20, 0, 30, 10),
                           FullCircle{{5, 5}, 3, false}, FullCircle{{5, 5}, 1, true}};
-    const Detours detours(region, allowed_mm, any_length_mm);
+    const Detours detours(region, infill_allowed_mm, any_length_mm);
     for (const auto& [from, to] : {std::pair<Point2, Point2>{{1, 1}, {25, 5}},
                                    {{1, 1}, {5, 5}},
                                    {{15, 5}, {1, 1}},
@@ -299,7 +300,7 @@ TEST_CASE("detour 1: from the boundary to the boundary, along edges and from cor
     const Contours region{
         comb(3),
     };
-    const Detours detours(region, allowed_mm, any_length_mm);
+    const Detours detours(region, infill_allowed_mm, any_length_mm);
     const Path path = comb(3);
     std::vector<Point2> places;
     Point2 start = path.start;
@@ -316,7 +317,7 @@ TEST_CASE("detour 1: from the boundary to the boundary, along edges and from cor
     }
     // Around a hole from its wall to its wall.
     const Contours ring{FullCircle{{0, 0}, 20, true}, FullCircle{{0, 0}, 10, false}};
-    const Detours around(ring, allowed_mm, any_length_mm);
+    const Detours around(ring, infill_allowed_mm, any_length_mm);
     for (int i = 1; i < 12; ++i) {
         const Point2 from(10, 0), to(10 * std::cos(i * pi / 6), 10 * std::sin(i * pi / 6));
         const Travel travel = around.way(from, to);
@@ -327,5 +328,5 @@ TEST_CASE("detour 1: from the boundary to the boundary, along edges and from cor
 }
 
 TEST_CASE("detour: nothing is inside an empty region") {
-    CHECK(Detours({}, allowed_mm).way({0, 0}, {1, 1}).crosses);
+    CHECK(Detours({}, infill_allowed_mm).way({0, 0}, {1, 1}).crosses);
 }

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "kernel/region/regions.h"
+#include "kernel/toolpath/sizes.h"
 #include "kernel/toolpath/walls.h"
 
 using namespace lyr;
@@ -10,12 +11,7 @@ using namespace lyr::testing;
 
 namespace {
 
-constexpr double width_mm = 0.45, height_mm = 0.2;
 const double round_mm = height_mm * (1 - pi / 4);
-
-WallRequest request(std::uint32_t count) {
-    return {.count = count, .width_mm = width_mm, .height_mm = height_mm, .allowed_mm = 0.00125};
-}
 
 // Without corners, where strands cover a little twice or not at all.
 double filled_mm2(const Walls& made) {
@@ -43,7 +39,7 @@ TEST_CASE("fitted walls 1, 2: a tube's walls are two circles about its centre th
         const double wall_mm = 0.77 + 0.015 * i;
         CAPTURE(wall_mm);
         const Contours tube{FullCircle{{3, 4}, 10, true}, FullCircle{{3, 4}, 10 - wall_mm, false}};
-        const Walls made = walls(tube, request(3));
+        const Walls made = walls(tube, wall_request(3));
         REQUIRE(made.strands.size() == 2);
         for (const Strand& strand : made.strands) {
             const auto* circle = std::get_if<FullCircle>(&strand.path);
@@ -71,7 +67,7 @@ TEST_CASE("fitted walls 1: ribs of 0.9 mm on a plate are full, and the plate's w
                       {{0, 0}}}};
     for (int turn = 0; turn < 4; ++turn) {
         const Motion motion{turn * 0.9, {1, 2}, turn % 2 == 1};
-        const Walls made = walls(lyr::testing::moved(Contours{shape}, motion), request(2));
+        const Walls made = walls(lyr::testing::moved(Contours{shape}, motion), wall_request(2));
         REQUIRE(made.strands.size() == 2);
         const Strand& wall = made.strands[0];
         CHECK(is_closed(wall));
@@ -111,7 +107,7 @@ TEST_CASE("walls: a strip within the walls that no line of the fill fits into st
         CAPTURE(strip_mm);
         const double spacing_mm = width_mm - round_mm;
         const double rib_mm = width_mm + spacing_mm + strip_mm;
-        const Walls made = walls(Contours{rectangle(0, 0, 30, rib_mm)}, request(1));
+        const Walls made = walls(Contours{rectangle(0, 0, 30, rib_mm)}, wall_request(1));
         CHECK(made.inside.empty());
         CHECK(total_area(made.gaps) == doctest::Approx(strip_mm * 29).epsilon(0.03));
     }

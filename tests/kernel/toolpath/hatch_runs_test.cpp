@@ -41,7 +41,7 @@ std::size_t row_count(const std::vector<HatchRun>& runs) {
 }
 
 // How far a straight line leaves the region.
-double stray_mm(const Contours& region, const Point2& from, const Point2& to) {
+double line_stray_mm(const Contours& region, const Point2& from, const Point2& to) {
     double stray = 0;
     for (int i = 1; i < 40; ++i) {
         const Point2 at = from + i / 40.0 * (to - from);
@@ -64,7 +64,7 @@ void check_runs(const Contours& region, const Filled& filled) {
             if (!run.rows[i].linked) continue;
             const Point2 from = row_end(run, i - 1, true), to = row_end(run, i, false);
             CHECK((to - from).norm() <= limits.longest_link_mm);
-            CHECK(stray_mm(region, from, to) <= limits.stray_mm);
+            CHECK(line_stray_mm(region, from, to) <= limits.stray_mm);
         }
     }
     CHECK(row_count(filled.runs) == filled.rows.spans.size());

@@ -5,20 +5,17 @@
 #include <numbers>
 #include <random>
 
+#include "kernel/region/regions.h"
+
 using namespace lyr;
+using namespace lyr::testing;
 
 namespace {
-
-using std::numbers::pi;
 
 double covered_mm2(const Hatch& hatch) {
     double length = 0;
     for (const HatchSpan& span : hatch.spans) length += span.end_mm - span.start_mm;
     return length * hatch.pitch_mm;
-}
-
-Path rectangle(double x0, double y0, double x1, double y1) {
-    return {{x0, y0}, {{{x1, y0}}, {{x1, y1}}, {{x0, y1}}, {{x0, y0}}}};
 }
 
 // A rounded slot with a bulge inwards: lines, arcs of both turns.

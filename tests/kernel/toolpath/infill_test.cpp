@@ -7,15 +7,14 @@
 #include "kernel/region/regions.h"
 #include "kernel/toolpath/fills.h"
 #include "kernel/toolpath/offset.h"
+#include "kernel/toolpath/sizes.h"
 
 using namespace lyr;
 using namespace lyr::testing;
 
 namespace {
 
-constexpr double allowed_mm = 0.005;
-constexpr double width_mm = 0.45, height_mm = 0.2;
-constexpr double stray_mm = allowed_mm + width_mm / 20;
+constexpr double stray_mm = infill_allowed_mm + width_mm / 20;
 
 constexpr InfillPattern patterns[] = {InfillPattern::rectilinear, InfillPattern::aligned,
                                       InfillPattern::grid,        InfillPattern::triangles,
@@ -30,7 +29,7 @@ InfillRequest request(InfillPattern pattern, double density, double angle_rad = 
             .angle_rad = angle_rad,
             .z_mm = (static_cast<double>(layer) + 0.5) * height_mm,
             .layer = layer,
-            .allowed_mm = allowed_mm};
+            .allowed_mm = infill_allowed_mm};
 }
 
 std::size_t pieces(const Fill& fill) {
@@ -44,7 +43,7 @@ void check_inside(const Contours& region, const Fill& fill, double link_mm = str
     for (const PrintedLine& line : lines_of(fill)) {
         const double length = lyr::length_mm(line.start, line.segment);
         const int steps = 2 + static_cast<int>(length / step_mm);
-        const double within = line.is_link ? link_mm : allowed_mm;
+        const double within = line.is_link ? link_mm : infill_allowed_mm;
         double worst = 0;
         for (int i = 0; i <= steps; ++i) {
             const Point2 at = point_at(line.start, line.segment, static_cast<double>(i) / steps);
@@ -56,7 +55,7 @@ void check_inside(const Contours& region, const Fill& fill, double link_mm = str
 }
 
 // A plate with arcs, holes, a slit and a neck that is narrower than sparse lines are apart.
-Contours plate() {
+Contours plate_with_neck() {
     Path outline{{-20, -10}, {}};
     const auto line = [&](double x, double y) { outline.segments.push_back({{x, y}}); };
     line(12, -10);
@@ -113,7 +112,7 @@ TEST_CASE("infill 2: no line leaves the region") {
                 const Motion motion{.angle_rad = 1.1 * static_cast<double>(layer),
                                     .shift = {3, -40},
                                     .mirrored = layer == 1};
-                const Contours region = moved(plate(), motion);
+                const Contours region = moved(plate_with_neck(), motion);
                 CAPTURE(static_cast<int>(pattern));
                 CAPTURE(density);
                 const Fill fill = infill(region, request(pattern, density, 0.8, layer));
@@ -164,7 +163,7 @@ TEST_CASE("infill 2: no line leaves regions whose edges and corners lie on rows"
         asked.width_mm = wide_mm;
         const Fill fill = infill(region, asked);
         CHECK(fill.unresolved == 0);
-        check_inside(region, fill, allowed_mm + wide_mm / 20);
+        check_inside(region, fill, infill_allowed_mm + wide_mm / 20);
     }
 }
 

@@ -5,21 +5,23 @@
 #include <doctest/doctest.h>
 
 #include "kernel/toolpath/fills.h"
+#include "kernel/toolpath/sizes.h"
 
 using namespace lyr;
 using namespace lyr::testing;
 
 namespace {
 
-InfillRequest request(InfillPattern pattern, double density, double z_mm, std::size_t layer = 0) {
+InfillRequest wave_request(InfillPattern pattern, double density, double z_mm,
+                           std::size_t layer = 0) {
     return {.pattern = pattern,
             .density = density,
-            .width_mm = 0.45,
-            .height_mm = 0.2,
+            .width_mm = width_mm,
+            .height_mm = height_mm,
             .angle_rad = 0.4,
             .z_mm = z_mm,
             .layer = layer,
-            .allowed_mm = 0.005};
+            .allowed_mm = infill_allowed_mm};
 }
 
 constexpr double fit_mm = 0.45 / 20;
@@ -43,7 +45,7 @@ TEST_CASE("gyroid: every height's curves are on the gyroid, periodic and smooth"
     for (int i = 0; i < 40; ++i) {
         const double z_mm = 0.2 * i;
         CAPTURE(z_mm);
-        const WavePattern pattern = gyroid_waves(request(InfillPattern::gyroid, 0.2, z_mm));
+        const WavePattern pattern = gyroid_waves(wave_request(InfillPattern::gyroid, 0.2, z_mm));
         REQUIRE(pattern.waves.size() == 2);
         for (const Wave& wave : pattern.waves) {
             const Vector2 ends = wave.segments.back().end - wave.start;
@@ -69,7 +71,7 @@ TEST_CASE("gyroid: every height's curves are on the gyroid, periodic and smooth"
 TEST_CASE("gyroid: heights at which curves touch are no worse than others") {
     for (const double off : {0.0, 1e-12, -1e-9, 1e-5, -1e-3, 2e-3}) {
         for (int quarter = 0; quarter < 4; ++quarter) {
-            InfillRequest asked = request(InfillPattern::gyroid, 0.2, 0);
+            InfillRequest asked = wave_request(InfillPattern::gyroid, 0.2, 0);
             const double unit = gyroid_waves(asked).period_mm / (2 * pi);
             asked.z_mm = unit * ((quarter + 0.5) * pi / 2 + off);
             const WavePattern pattern = gyroid_waves(asked);
@@ -91,7 +93,7 @@ TEST_CASE("gyroid: heights at which curves touch are no worse than others") {
 TEST_CASE("gyroid: the mean length over all heights is the density's") {
     constexpr int heights = 400;
     double share = 0;
-    InfillRequest asked = request(InfillPattern::gyroid, 0.2, 0);
+    InfillRequest asked = wave_request(InfillPattern::gyroid, 0.2, 0);
     const double period = gyroid_waves(asked).period_mm;
     for (int i = 0; i < heights; ++i) {
         asked.z_mm = period * (i + 0.5) / heights;
@@ -114,7 +116,7 @@ TEST_CASE("honeycomb: the walls of all layers lie over each other, each double i
     std::vector<std::vector<PrintedLine>> layers;
     for (std::size_t layer = 0; layer < 4; ++layer) {
         Fill fill;
-        const InfillRequest asked = request(InfillPattern::honeycomb, 0.15, 0, layer);
+        const InfillRequest asked = wave_request(InfillPattern::honeycomb, 0.15, 0, layer);
         fill_with_waves(square, honeycomb_waves(asked), asked, fill);
         layers.push_back(lines_of(fill));
     }

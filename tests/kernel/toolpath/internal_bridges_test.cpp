@@ -8,19 +8,13 @@
 #include "kernel/toolpath/bridges.h"
 #include "kernel/toolpath/islands.h"
 #include "kernel/toolpath/offset.h"
+#include "kernel/toolpath/sizes.h"
 #include "kernel/toolpath/stacks.h"
 
 using namespace lyr;
 using namespace lyr::testing;
 
 namespace {
-
-constexpr double allowed_mm = 1e-4, width_mm = 0.45, walls_mm = 0.6;
-constexpr SkinRequest usual{.top_layers = 3,
-                            .bottom_layers = 2,
-                            .width_mm = width_mm,
-                            .min_sparse_mm2 = 0,
-                            .allowed_mm = allowed_mm};
 
 struct Bridged {
     Contours sparse_below;
@@ -29,7 +23,7 @@ struct Bridged {
 
 // Layer by layer from the second one.
 std::vector<Bridged> bridged(const std::vector<Contours>& layers, const Motion& motion = {},
-                             const SkinRequest& request = usual) {
+                             const SkinRequest& request = usual_skins) {
     std::vector<Contours> outlines;
     for (const Contours& layer : layers) outlines.push_back(moved(layer, motion));
     std::vector<SkinOutline> seen;
@@ -46,11 +40,6 @@ std::vector<Bridged> bridged(const std::vector<Contours>& layers, const Motion& 
         below = skins.sparse;
     }
     return result;
-}
-
-double depth_in(const Contours& region, const Point2& point) {
-    const double distance = distance_to(region, point);
-    return winding(region, point) > 0 ? distance : -distance;
 }
 
 void check_point(const Bridged& layer, const Point2& point) {
@@ -113,15 +102,6 @@ std::vector<Chord> lines_along_x(double pitch_mm, const Motion& motion) {
     return lines;
 }
 
-double apart(double a, double b) {
-    const double turn = std::abs(a - b) / pi;
-    return pi * std::abs(turn - std::round(turn));
-}
-
-double after(double angle, const Motion& motion) {
-    return motion.angle_rad + (motion.mirrored ? -angle : angle);
-}
-
 }  // namespace
 
 TEST_CASE(
@@ -162,7 +142,7 @@ TEST_CASE("internal bridges: the first solid layer under a roof or step, and no 
 }
 
 TEST_CASE("internal bridges: a single top layer is one itself") {
-    SkinRequest single = usual;
+    SkinRequest single = usual_skins;
     single.top_layers = 1;
     const auto layers = bridged(std::vector<Contours>(8, {rectangle(0, 0, 20, 20)}), {}, single);
     CHECK(layers.back().after.top.empty());
@@ -173,7 +153,7 @@ TEST_CASE("internal bridges 1: what is narrower than a bridge stays solid") {
     for (const auto& [step_mm, is_bridged] : {std::pair(1.2, false), {1.5, true}}) {
         const LayerSkins wide{.solid = {rectangle(0, 0, 10, 10)}};
         LayerSkins skins = wide;
-        add_internal_bridges(skins, Contours{rectangle(10 - step_mm, -5, 30, 15)}, usual);
+        add_internal_bridges(skins, Contours{rectangle(10 - step_mm, -5, 30, 15)}, usual_skins);
         CHECK(skins.internal_bridge.empty() != is_bridged);
         if (!is_bridged) CHECK(skins.solid == wide.solid);
         if (is_bridged)
@@ -187,7 +167,7 @@ TEST_CASE("internal bridges 2: no strip narrower than a line is left beside one"
     for (const auto& [band_mm, is_left] :
          {std::pair(1.8 * width_mm, false), {3 * width_mm, true}}) {
         LayerSkins skins{.solid = {rectangle(0, 0, 10, 10)}};
-        add_internal_bridges(skins, Contours{rectangle(band_mm, 0, 10, 10)}, usual);
+        add_internal_bridges(skins, Contours{rectangle(band_mm, 0, 10, 10)}, usual_skins);
         CHECK(skins.solid.empty() != is_left);
         CHECK(total_area(skins.solid) + total_area(skins.internal_bridge) == doctest::Approx(100));
     }
@@ -195,7 +175,7 @@ TEST_CASE("internal bridges 2: no strip narrower than a line is left beside one"
 
 TEST_CASE("internal bridges 4: what is unresolved or out of range stays and is counted") {
     LayerSkins skins{.solid = {rectangle(0, 0, 10, 10)}};
-    SkinRequest request = usual;
+    SkinRequest request = usual_skins;
     request.width_mm = 0;
     add_internal_bridges(skins, Contours{rectangle(0, 0, 10, 10)}, request);
     CHECK(skins.unresolved == 1);

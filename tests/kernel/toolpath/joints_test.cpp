@@ -5,6 +5,7 @@
 #include "kernel/toolpath/boundary.h"
 #include "kernel/toolpath/centre_lines.h"
 #include "kernel/toolpath/fills.h"
+#include "kernel/toolpath/sizes.h"
 #include "kernel/toolpath/walls.h"
 
 using namespace lyr;
@@ -12,14 +13,10 @@ using namespace lyr::testing;
 
 namespace {
 
-constexpr double allowed_mm = 0.00125;
-constexpr double width_mm = 0.45, height_mm = 0.2, min_width_mm = 0.2;
-
-const Motion motions[] = {
-    {}, {0.3, {1, 2}}, {2.1, {-40, 7}, true}, {pi / 2, {0, 0}}, {-1, {100, 80}, true}};
+constexpr double min_width_mm = 0.2;
 
 Contours sum(const Contours& a, const Contours& b) {
-    return combined(a, b, Operation::unite, allowed_mm).contours;
+    return combined(a, b, Operation::unite, wall_allowed_mm).contours;
 }
 
 // Along the x-axis, from its middle at x = 0, leaning by an angle.
@@ -29,7 +26,7 @@ Contours bar(double from_mm, double to_mm, double rib_mm, double angle_rad = 0) 
 }
 
 // To the left of the y-axis.
-Contours plate() {
+Contours plate_on_left() {
     return {rectangle(-10, -10, 0, 10)};
 }
 
@@ -43,13 +40,13 @@ Printed printed(const Contours& region) {
                                   .width_mm = width_mm,
                                   .height_mm = height_mm,
                                   .min_width_mm = min_width_mm,
-                                  .allowed_mm = allowed_mm}),
+                                  .allowed_mm = wall_allowed_mm}),
                    {}};
     CHECK(result.made.unresolved == 0);
-    const CentreLines lines =
-        centre_lines(result.made.thin,
-                     {.min_width_mm = min_width_mm, .max_width_mm = 0.9, .allowed_mm = allowed_mm},
-                     result.made.thin_joints);
+    const CentreLines lines = centre_lines(
+        result.made.thin,
+        {.min_width_mm = min_width_mm, .max_width_mm = 0.9, .allowed_mm = wall_allowed_mm},
+        result.made.thin_joints);
     CHECK(lines.unresolved == 0);
     result.thin = lines.strands;
     return result;
@@ -123,7 +120,7 @@ void check_covered(const Contours& region, const Printed& print, double least_sh
     };
     for (const Strand& strand : print.made.strands) add(strand, false);
     for (const Strand& strand : print.thin) add(strand, true);
-    CHECK(most_outside_mm <= allowed_mm + width_step_mm / 2);
+    CHECK(most_outside_mm <= wall_allowed_mm + width_step_mm / 2);
     constexpr double grid_mm = 0.04;
     const auto box = box_of(region);
     double all = 0, covered = 0;
@@ -135,7 +132,7 @@ void check_covered(const Contours& region, const Printed& print, double least_sh
             covered += inside.winding(point) == 1 || gaps.winding(point) == 1 ||
                        std::any_of(lines.begin(), lines.end(), [&](const auto& line) {
                            return distance_mm(line.first.start, line.first.segment, point) <=
-                                  line.second / 2 + allowed_mm;
+                                  line.second / 2 + wall_allowed_mm;
                        });
         }
     CHECK(covered / all >= least_share);
@@ -156,7 +153,7 @@ std::vector<Contours> with_web(double web_mm) {
     const Contours above{FullCircle{{0, y_mm}, radius_mm, true}};
     const Contours below{FullCircle{{0, -y_mm}, radius_mm, true}};
     const auto less = [](const Contours& from, const Contours& part) {
-        return combined(from, part, Operation::subtract, allowed_mm).contours;
+        return combined(from, part, Operation::subtract, wall_allowed_mm).contours;
     };
     return {less(less(plate, above), below),
             less(Contours{rectangle(-6, -web_mm / 2, 6, 5)}, above),
@@ -195,9 +192,9 @@ TEST_CASE(
         for (const double lean_rad : {0.0, 0.4, -0.7}) {
             CAPTURE(rib_mm);
             CAPTURE(lean_rad);
-            for (const Motion& motion : motions) {
+            for (const Motion& motion : rib_motions) {
                 const Contours region =
-                    lyr::testing::moved(sum(plate(), bar(-2, 8, rib_mm, lean_rad)), motion);
+                    lyr::testing::moved(sum(plate_on_left(), bar(-2, 8, rib_mm, lean_rad)), motion);
                 const Printed print = printed(region);
                 REQUIRE(print.thin.size() == 1);
                 CHECK(std::get<Path>(print.thin[0].path).segments.size() <= 2);
@@ -224,7 +221,7 @@ TEST_CASE("joints: a plate with a thin rib is covered up to where they meet") {
 TEST_CASE("joints: a thin rib between two bodies reaches both walls") {
     const Contours bodies{rectangle(-4, -4, 0, 4), rectangle(3, -4, 7, 4)};
     for (const double rib_mm : {0.25, 0.4, 0.6, 0.7})
-        for (const Motion& motion : motions) {
+        for (const Motion& motion : rib_motions) {
             CAPTURE(rib_mm);
             const Contours region = lyr::testing::moved(sum(bodies, bar(-1, 4, rib_mm)), motion);
             const Printed print = printed(region);
@@ -241,7 +238,7 @@ TEST_CASE("joints: thin ribs that meet in a T or a cross between bodies reach th
     const Contours frame{rectangle(-6, -6, 6, 6), reversed(Contour(rectangle(-4, -4, 4, 4)))};
     for (const double rib_mm : {0.3, 0.4, 0.5, 0.65})
         for (const bool crossed : {false, true})
-            for (const Motion& motion : motions) {
+            for (const Motion& motion : rib_motions) {
                 CAPTURE(rib_mm);
                 CAPTURE(crossed);
                 const Contours second = bar(crossed ? -5 : 0, 5, rib_mm, pi / 2);
@@ -260,17 +257,17 @@ TEST_CASE("joints: a gap between walls that widens is filled up to the walls ins
     const double spacing_mm = width_mm - height_mm * (1 - pi / 4);
     const Contours bodies{rectangle(-6, -4, 0, 4), rectangle(5, -4, 11, 4)};
     for (const double gap_mm : {0.15, 0.3, 0.5})
-        for (const Motion& motion : motions) {
+        for (const Motion& motion : rib_motions) {
             CAPTURE(gap_mm);
             const Contours region = lyr::testing::moved(
                 sum(bodies, bar(-1, 6, width_mm + spacing_mm + gap_mm)), motion);
             const Printed print = printed(region);
             CHECK(print.thin.empty());
             REQUIRE(!print.made.gaps.empty());
-            const CentreLines lines =
-                centre_lines(print.made.gaps,
-                             {.min_width_mm = 0.1, .max_width_mm = 0.9, .allowed_mm = allowed_mm},
-                             print.made.gap_joints);
+            const CentreLines lines = centre_lines(
+                print.made.gaps,
+                {.min_width_mm = 0.1, .max_width_mm = 0.9, .allowed_mm = wall_allowed_mm},
+                print.made.gap_joints);
             REQUIRE(lines.strands.size() == 1);
             Contours inner;
             for (std::size_t i = 0; i < print.made.strands.size(); ++i)
@@ -286,11 +283,11 @@ TEST_CASE("joints: a gap between walls that widens is filled up to the walls ins
 TEST_CASE("joints: ribs hardly longer than wide are joined to the body that they are on") {
     for (const double rib_mm : {0.25, 0.3, 0.4}) {
         CAPTURE(rib_mm);
-        Contours comb = plate();
+        Contours comb = plate_on_left();
         constexpr int teeth = 7;
         for (int i = 0; i < teeth; ++i)
             comb = sum(comb, lyr::testing::moved(bar(-1, 0.7, rib_mm), {0, {0, 2.5 * i - 8}}));
-        for (const Motion& motion : motions) {
+        for (const Motion& motion : rib_motions) {
             const Contours region = lyr::testing::moved(comb, motion);
             const Printed print = printed(region);
             CHECK(print.thin.size() == teeth);
@@ -301,7 +298,7 @@ TEST_CASE("joints: ribs hardly longer than wide are joined to the body that they
 
 TEST_CASE("joints: webs of 0.2 to 0.45 mm were lost where the walls run around both holes") {
     for (const double web_mm : {0.2, 0.22, 0.3, 0.35, 0.4, 0.43})
-        for (const Motion& motion : motions) {
+        for (const Motion& motion : rib_motions) {
             CAPTURE(web_mm);
             for (const Contours& shape : with_web(web_mm)) {
                 const Contours region = lyr::testing::moved(shape, motion);
@@ -319,7 +316,7 @@ TEST_CASE("joints: webs of 0.2 to 0.45 mm were lost where the walls run around b
 TEST_CASE("joints: webs of a line to two, whose walls are cut off each other, had open ends") {
     for (const double web_mm :
          {0.46, 0.47, 0.49, 0.52, 0.56, 0.6, 0.64, 0.66, 0.68, 0.69, 0.7, 0.72, 0.74, 0.76})
-        for (const Motion& motion : motions) {
+        for (const Motion& motion : rib_motions) {
             CAPTURE(web_mm);
             for (const Contours& shape : with_web(web_mm)) {
                 const Printed print = printed(lyr::testing::moved(shape, motion));
@@ -341,7 +338,7 @@ TEST_CASE("joints: webs of a line to two, whose walls are cut off each other, ha
 
 TEST_CASE("joints: webs thinner than the least width were lost without a word") {
     for (const double web_mm : {0.05, 0.1, 0.15, 0.18})
-        for (const Motion& motion : motions) {
+        for (const Motion& motion : rib_motions) {
             CAPTURE(web_mm);
             for (const Contours& shape : with_web(web_mm)) {
                 const Printed print = printed(lyr::testing::moved(shape, motion));

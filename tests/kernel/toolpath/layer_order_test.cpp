@@ -10,6 +10,7 @@
 #include "kernel/toolpath/hatch.h"
 #include "kernel/toolpath/islands.h"
 #include "kernel/toolpath/offset.h"
+#include "kernel/toolpath/sizes.h"
 #include "kernel/toolpath/wall_nests.h"
 
 using namespace lyr;
@@ -17,7 +18,7 @@ using namespace lyr::testing;
 
 namespace {
 
-constexpr double width_mm = 0.45, allowed_mm = 1e-3;
+constexpr double ring_allowed_mm = 1e-3;
 
 struct Layer {
     Contours region;
@@ -31,7 +32,7 @@ struct Layer {
 Layer layer_of(const Contours& region, std::uint32_t wall_count) {
     Layer layer{region};
     for (std::uint32_t depth = 0; depth <= wall_count; ++depth) {
-        const OffsetResult ring = offset(region, {-(depth + 0.5) * width_mm, allowed_mm});
+        const OffsetResult ring = offset(region, {-(depth + 0.5) * width_mm, ring_allowed_mm});
         if (depth < wall_count) {
             for (const Contour& contour : ring.contours) {
                 layer.walls.push_back({contour, width_mm});
@@ -209,7 +210,7 @@ TEST_CASE("layer order 4: outermost walls begin at their seams, inner ones besid
 
 TEST_CASE("layer order 5: within a part no way crosses, between parts every one does") {
     const Layer layer = layer_of(plates(), 2);
-    const Detours detours(layer.region, allowed_mm, 1e9);
+    const Detours detours(layer.region, ring_allowed_mm, 1e9);
     LayerPlan plan = layer.plan();
     plan.detours = &detours;
     plan.head = {-5, -5};

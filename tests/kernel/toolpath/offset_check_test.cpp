@@ -6,13 +6,12 @@
 
 #include "kernel/region/regions.h"
 #include "kernel/toolpath/boundary.h"
+#include "kernel/toolpath/sizes.h"
 
 using namespace lyr;
 using namespace lyr::testing;
 
 namespace {
-
-constexpr double allowed_mm = 1e-4;
 
 // A contour so wide, in distances, holds a place that the check looks at, or nearly always.
 constexpr double wide_share = 0.5;
@@ -36,12 +35,12 @@ std::optional<OffsetFault> fault_of(const Case& made, const Contours& result) {
     return lyr::fault_of(BoundedRegion(result), BoundedRegion(made.region), made.request);
 }
 
-double width_mm(const Contour& contour) {
+double mean_width_mm(const Contour& contour) {
     return 2 * std::abs(area_mm2(contour)) / length_mm(contour);
 }
 
 bool is_wide(const Case& made, const Contour& contour) {
-    return width_mm(contour) > wide_share * std::abs(made.request.distance_mm);
+    return mean_width_mm(contour) > wide_share * std::abs(made.request.distance_mm);
 }
 
 RegionResult as_found(const Contours& contours) {

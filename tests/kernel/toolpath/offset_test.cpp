@@ -5,13 +5,12 @@
 #include <doctest/doctest.h>
 
 #include "kernel/region/regions.h"
+#include "kernel/toolpath/sizes.h"
 
 using namespace lyr;
 using namespace lyr::testing;
 
 namespace {
-
-constexpr double allowed_mm = 1e-4;
 
 OffsetResult offset_by(const Contours& region, double distance_mm, Corner corner = Corner::round) {
     return offset(region, {distance_mm, allowed_mm, corner});

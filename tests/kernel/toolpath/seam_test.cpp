@@ -6,16 +6,15 @@
 
 #include "kernel/region/regions.h"
 #include "kernel/toolpath/offset.h"
+#include "kernel/toolpath/sizes.h"
 
 using namespace lyr;
 using namespace lyr::testing;
 
 namespace {
 
-constexpr double width_mm = 0.45;
 // Round-off of coordinates up to some hundred millimetres.
 constexpr double same_mm = 1e-9;
-const Point2 origin = Point2::Zero();
 
 constexpr SeamChoice all_choices[] = {SeamChoice::nearest, SeamChoice::rear, SeamChoice::aligned,
                                       SeamChoice::sharp};

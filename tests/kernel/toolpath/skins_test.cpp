@@ -8,19 +8,13 @@
 
 #include "kernel/region/regions.h"
 #include "kernel/toolpath/offset.h"
+#include "kernel/toolpath/sizes.h"
 #include "kernel/toolpath/stacks.h"
 
 using namespace lyr;
 using namespace lyr::testing;
 
 namespace {
-
-constexpr double allowed_mm = 1e-4, width_mm = 0.45, walls_mm = 0.6;
-constexpr SkinRequest usual{.top_layers = 3,
-                            .bottom_layers = 2,
-                            .width_mm = width_mm,
-                            .min_sparse_mm2 = 0,
-                            .allowed_mm = allowed_mm};
 
 struct Stack {
     std::vector<Contours> outlines, insides;
@@ -38,7 +32,7 @@ struct Stack {
         return result;
     }
 
-    LayerSkins skins(std::size_t layer, const SkinRequest& request = usual) const {
+    LayerSkins skins(std::size_t layer, const SkinRequest& request = usual_skins) const {
         return skins_of(skin_outlines(), layer, insides[layer], request);
     }
 };
@@ -48,18 +42,13 @@ double area_of(const LayerSkins& skins) {
            total_area(skins.solid) + total_area(skins.sparse);
 }
 
-// How deep a point is in the region; negative: how far from it.
-double depth_in(const Contours& region, const Point2& point) {
-    const double distance = distance_to(region, point);
-    return winding(region, point) > 0 ? distance : -distance;
-}
-
 // Where the least of the layers around it, none beyond the part, is over the point: how deep it is in that.
 double depth_in_window(const Stack& stack, std::size_t layer, const Point2& point) {
     const std::size_t count = stack.outlines.size();
-    if (layer < usual.bottom_layers || layer + usual.top_layers >= count) return -1e9;
+    if (layer < usual_skins.bottom_layers || layer + usual_skins.top_layers >= count) return -1e9;
     double depth = 1e9;
-    for (std::size_t k = layer - usual.bottom_layers; k <= layer + usual.top_layers; ++k)
+    for (std::size_t k = layer - usual_skins.bottom_layers; k <= layer + usual_skins.top_layers;
+         ++k)
         depth = std::min(depth, depth_in(stack.outlines[k], point));
     return depth;
 }
@@ -178,7 +167,7 @@ TEST_CASE("skins: over a cavity the roof is a bridge, its floor a top skin") {
 
 TEST_CASE("skins: none of the kinds that no layers are asked for") {
     const Stack stack(hollow_box());
-    SkinRequest none = usual;
+    SkinRequest none = usual_skins;
     none.top_layers = none.bottom_layers = 0;
     for (std::size_t layer = 0; layer < stack.outlines.size(); ++layer)
         CHECK(stack.skins(layer, none).sparse == stack.insides[layer]);
@@ -207,7 +196,7 @@ TEST_CASE("skins 2: gaps of two layers that are narrow each and side by side are
 
 TEST_CASE("skins 4: small sparse parts are solid") {
     std::vector<Contours> layers(12, {rectangle(0, 0, 3, 3), rectangle(10, 0, 20, 10)});
-    SkinRequest request = usual;
+    SkinRequest request = usual_skins;
     request.min_sparse_mm2 = 5;
     const Stack stack(layers);
     const LayerSkins skins = stack.skins(5, request);
@@ -231,7 +220,7 @@ TEST_CASE("skins 5: what is not finite is solid and counted") {
     CHECK(skins.unresolved == 1);
     CHECK(skins.solid == stack.insides[6]);
     CHECK(stack.skins(2).unresolved == 0);
-    SkinRequest request = usual;
+    SkinRequest request = usual_skins;
     request.width_mm = 0;
     CHECK(Stack(staircase()).skins(5, request).unresolved == 1);
 }
@@ -242,10 +231,10 @@ TEST_CASE("skins 6: outlines beyond the window do not matter") {
         for (std::size_t layer = 0; layer < layers.size(); ++layer) {
             auto outlines = stack.skin_outlines();
             for (std::size_t k = 0; k < outlines.size(); ++k)
-                if (k + usual.bottom_layers < layer || k > layer + usual.top_layers)
+                if (k + usual_skins.bottom_layers < layer || k > layer + usual_skins.top_layers)
                     outlines[k] = SkinOutline();
             const LayerSkins one = stack.skins(layer);
-            const LayerSkins other = skins_of(outlines, layer, stack.insides[layer], usual);
+            const LayerSkins other = skins_of(outlines, layer, stack.insides[layer], usual_skins);
             CHECK(one.top == other.top);
             CHECK(one.bridge == other.bridge);
             CHECK(one.solid == other.solid);
@@ -262,7 +251,7 @@ TEST_CASE("skins: of more different layers than are asked at once") {
             {rectangle(0, 0, 80, 20), reversed(rectangle(2 + 3.7 * i, 5, 4 + 3.7 * i, 15))});
     }
     const Stack stack(layers);
-    SkinRequest request = usual;
+    SkinRequest request = usual_skins;
     request.top_layers = request.bottom_layers = 6;
     const LayerSkins skins = stack.skins(10, request);
     CHECK(skins.unresolved == 0);

@@ -1,4 +1,4 @@
-// Outlines of layers over each other, for tests of skins.
+// Outlines of layers over each other, for tests of skins and bridges, and what these are asked for.
 
 #pragma once
 
@@ -6,8 +6,33 @@
 #include <vector>
 
 #include "kernel/region/regions.h"
+#include "kernel/toolpath/sizes.h"
+#include "kernel/toolpath/skins.h"
 
 namespace lyr::testing {
+
+inline constexpr double walls_mm = 0.6;
+inline constexpr SkinRequest usual_skins{.top_layers = 3,
+                                         .bottom_layers = 2,
+                                         .width_mm = width_mm,
+                                         .min_sparse_mm2 = 0,
+                                         .allowed_mm = allowed_mm};
+
+// How deep a point is in the region; negative: how far from it.
+inline double depth_in(const Contours& region, const Point2& point) {
+    const double distance = distance_to(region, point);
+    return winding(region, point) > 0 ? distance : -distance;
+}
+
+// Of directions: a half turn makes no difference.
+inline double apart(double a, double b) {
+    const double turn = std::abs(a - b) / pi;
+    return pi * std::abs(turn - std::round(turn));
+}
+
+inline double after(double angle, const Motion& motion) {
+    return motion.angle_rad + (motion.mirrored ? -angle : angle);
+}
 
 inline const std::vector<Motion> motions{
     {}, {0.4, {3, -7}}, {pi / 2, {0, 1}}, {1.1, {-20, 5}, true}};

@@ -10,6 +10,7 @@
 
 #include "kernel/region/regions.h"
 #include "kernel/toolpath/point_tree.h"
+#include "kernel/toolpath/sizes.h"
 
 using namespace lyr;
 using namespace lyr::testing;
@@ -17,8 +18,6 @@ using namespace lyr::testing;
 namespace {
 
 using Stops = std::vector<Stop>;
-
-const Point2 origin = Point2::Zero();
 
 // Half of them closed, or all.
 Stops random_stops(Random& random, int count, double size_mm, bool all_closed = false) {

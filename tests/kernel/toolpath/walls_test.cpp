@@ -3,19 +3,14 @@
 #include <doctest/doctest.h>
 
 #include "kernel/region/regions.h"
+#include "kernel/toolpath/sizes.h"
 
 using namespace lyr;
 using namespace lyr::testing;
 
 namespace {
 
-constexpr double allowed_mm = 0.00125;
-constexpr double width_mm = 0.45, height_mm = 0.2;
 const double spacing_mm = width_mm - height_mm * (1 - pi / 4);
-
-WallRequest request(std::uint32_t count) {
-    return {.count = count, .width_mm = width_mm, .height_mm = height_mm, .allowed_mm = allowed_mm};
-}
 
 FullCircle circle(double x, double y, double radius_mm, bool hole = false) {
     return {{x, y}, radius_mm, !hole};
@@ -37,7 +32,7 @@ TEST_CASE(
     "walls 1: a hole of 10 mm measures 10 mm between its wall's flanks, and all walls are about "
     "its centre") {
     const Contours plate{rectangle(0, 0, 40, 30), circle(20, 15, 5, true)};
-    const Walls made = walls(plate, request(3));
+    const Walls made = walls(plate, wall_request(3));
     REQUIRE(made.strands.size() == 6);
     CHECK(made.thin.empty());
     CHECK(made.gaps.empty());
@@ -69,7 +64,7 @@ TEST_CASE(
                                             {1.5, false, true},
                                             {1.75, false, false}}) {
         CAPTURE(rib_mm);
-        const Walls made = walls(Contours{rectangle(0, 0, 30, rib_mm)}, request(2));
+        const Walls made = walls(Contours{rectangle(0, 0, 30, rib_mm)}, wall_request(2));
         CHECK(made.thin.empty() == !thin);
         CHECK(made.gaps.empty() == !gap);
         CHECK(made.strands.empty() == thin);
@@ -81,7 +76,7 @@ TEST_CASE(
 TEST_CASE(
     "walls 2: a rib is left out below the least width, and not at it, and gaps have their own") {
     const auto made_of = [](double rib_mm) {
-        return walls(Contours{rectangle(0, 0, 30, rib_mm)}, request(2));
+        return walls(Contours{rectangle(0, 0, 30, rib_mm)}, wall_request(2));
     };
     for (const double rib_mm : {0.2, 0.21}) {
         CHECK(total_area(made_of(rib_mm).thin) == doctest::Approx(30 * rib_mm).epsilon(0.002));
@@ -112,7 +107,7 @@ TEST_CASE(
                                          : Contour(circle(2 * i, 0, size_mm / 2)));
                 if (on_plate) region.push_back(rectangle(0, 10, 20, 30));
                 const double area = total_area(Contours(region.begin(), region.begin() + count));
-                const Walls made = walls(region, request(2));
+                const Walls made = walls(region, wall_request(2));
                 CHECK(made.strands.size() == (on_plate ? 2 : 0));
                 CHECK(total_area(made.thin) + made.left_out_mm2 ==
                       doctest::Approx(area).epsilon(0.01));
@@ -128,7 +123,7 @@ TEST_CASE(
             const Motion motion{turn * 0.9, {1, 2}, turn == 1};
             const Contours upright{Path{{0, 0}, {{{40, 0}}, {{40, rise_mm}}, {{0, 0}}}}};
             const Contours wedge = lyr::testing::moved(upright, motion);
-            const Walls made = walls(wedge, request(3));
+            const Walls made = walls(wedge, wall_request(3));
             CHECK(made.unresolved == 0);
             CHECK(accounted_mm2(made) == doctest::Approx(total_area(wedge)).epsilon(0.02));
             // The tip from where it is 0.2 mm wide to where a wall begins; how much of that is left out besides, corners.
@@ -149,7 +144,7 @@ TEST_CASE("walls 2: a thin rib on a plate leaves the plate's walls as they are")
                       {{14.7, 20}},
                       {{0, 20}},
                       {{0, 0}}}};
-    const Walls made = walls(Contours{shape}, request(3));
+    const Walls made = walls(Contours{shape}, wall_request(3));
     REQUIRE(made.strands.size() == 3);
     CHECK(total_area(made.thin) == doctest::Approx(15 * 0.6).epsilon(0.03));
     for (std::size_t i = 0; i < 3; ++i) {
@@ -172,7 +167,7 @@ TEST_CASE("walls: their bands, the narrow parts and the inside are the region") 
                 {circle(0, 0, 10), circle(1.0, 0, 8.5, true)}};
             for (const Contours& shape : shapes) {
                 const Contours region = lyr::testing::moved(shape, motion);
-                const Walls made = walls(region, request(count));
+                const Walls made = walls(region, wall_request(count));
                 CHECK(made.unresolved == 0);
                 CHECK(made.strands.size() == made.depths.size());
                 for (const Strand& strand : made.strands) CHECK(is_closed(strand));
@@ -186,10 +181,10 @@ TEST_CASE("walls: their bands, the narrow parts and the inside are the region") 
 TEST_CASE(
     "walls 4: no walls leave everything inside, and a region in which nothing fits is left out") {
     const Contours plate{rectangle(0, 0, 40, 30)};
-    CHECK(total_area(walls(plate, request(0)).inside) == 1200);
-    const Walls none = walls(Contours{rectangle(0, 0, 40, 0.15)}, request(2));
+    CHECK(total_area(walls(plate, wall_request(0)).inside) == 1200);
+    const Walls none = walls(Contours{rectangle(0, 0, 40, 0.15)}, wall_request(2));
     CHECK(none.strands.empty());
     CHECK(none.thin.empty());
     CHECK(none.left_out_mm2 == doctest::Approx(6).epsilon(0.01));
-    CHECK(walls(Contours{}, request(2)).strands.empty());
+    CHECK(walls(Contours{}, wall_request(2)).strands.empty());
 }
