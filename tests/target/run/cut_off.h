@@ -8,6 +8,9 @@
 
 namespace lyr::tests {
 
+// Of a printer's steppers.
+inline constexpr std::size_t line_count = 8;
+
 // Of this file on this printer, 5 s into a print of 6 layers; the rest is the entry's.
 inline void write_journal(const config::Printer& printer, const std::string& file,
                           run::JournalEntry entry) {

@@ -55,12 +55,6 @@ Finished finished(const config::Printer& printer, const std::string& file = shor
     return {*report, status};
 }
 
-config::Printer parking_printer() {
-    config::Printer printer = config::generic_printer();
-    printer.pause.park_mm = {{5, 120}};
-    return printer;
-}
-
 std::int64_t steps(const config::Printer& printer, std::size_t axis, double mm) {
     return std::llround(mm * printer.axes[axis].steps_per_mm);
 }

@@ -25,27 +25,16 @@ using namespace lyr::tests;
 
 namespace {
 
-constexpr format::Heater tool{format::HeaterKind::tool, 0}, bed{format::HeaterKind::bed, 0},
-    chamber{format::HeaterKind::chamber, 0};
+constexpr format::Heater chamber{format::HeaterKind::chamber, 0};
 
-StateChange heated(double tool_c, double bed_c) {
-    return [=](format::LayerState& state) {
-        state.temperatures.push_back({bed, bed_c});
-        state.temperatures.push_back({tool, tool_c});
-    };
-}
-
-Result<SimulationReport> simulated(const std::string& file, const std::string& script = "",
-                                   config::Printer printer = config::generic_printer()) {
+Result<SimulationReport> simulated_with_faults(
+    const std::string& file, const std::string& script = "",
+    config::Printer printer = config::generic_printer()) {
     const auto faults = thermal::parse_faults(script, "faults", printer);
     REQUIRE(faults.ok());
     SimulationJob job{file, std::move(printer), {}, {}, {}};
     job.faults = *faults;
     return simulate(job);
-}
-
-std::string message_of(const Result<SimulationReport>& report) {
-    return report ? std::string() : to_string(report.error());
 }
 
 Diagnostics refused_of(const std::string& file, const config::Printer& printer) {
@@ -155,7 +144,7 @@ TEST_CASE(
     "simulate 4: a print heats first, holds while it prints, and its path is the cold one's") {
     const std::string file = write_print(
         "heat_print", {draw_square, draw_arcs, draw_circles, draw_wipes}, {}, heated(210, 60));
-    const Result<SimulationReport> hot = simulated(file);
+    const Result<SimulationReport> hot = simulated_with_faults(file);
     REQUIRE_MESSAGE(hot.ok(), message_of(hot));
     CHECK(hot->notes.empty());
     CHECK(hot->within_limits());
@@ -195,9 +184,9 @@ TEST_CASE("executor 7: waits in the middle of a layer bring the head to rest, an
     const std::vector<Drawing> waits{step(230, true), step(200, true), step(210, true)};
     const std::vector<Drawing> none{step(230, false), step(200, false), step(210, false)};
     const Result<SimulationReport> waited =
-        simulated(write_print("heat_waits", waits, {}, heated(205, 50)));
+        simulated_with_faults(write_print("heat_waits", waits, {}, heated(205, 50)));
     const Result<SimulationReport> flying =
-        simulated(write_print("heat_none", none, {}, heated(205, 50)));
+        simulated_with_faults(write_print("heat_none", none, {}, heated(205, 50)));
     REQUIRE_MESSAGE(waited.ok(), message_of(waited));
     REQUIRE_MESSAGE(flying.ok(), message_of(flying));
     CHECK(waited->within_limits());
@@ -231,9 +220,9 @@ TEST_CASE("step stream 2: orders between two moves are one, and memory does not 
                            }},
                            {}, heated(210, 60));
     };
-    const Result<SimulationReport> flies = simulated(storm(false));
+    const Result<SimulationReport> flies = simulated_with_faults(storm(false));
     CHECK_MESSAGE(flies.ok(), message_of(flies));
-    const Result<SimulationReport> refused = simulated(storm(true));
+    const Result<SimulationReport> refused = simulated_with_faults(storm(true));
     REQUIRE_FALSE(refused.ok());
     CHECK(refused.error().status == ExitStatus::input);
     HeatOrder order, next;
@@ -323,7 +312,7 @@ TEST_CASE(
           std::pair{"0 no_power bed", "less than 2 °C"},
           std::pair{"165 jump tool 50", "no heater does"}, std::pair{"10 silent", "silent"}}) {
         CAPTURE(script);
-        const Result<SimulationReport> report = simulated(file, script);
+        const Result<SimulationReport> report = simulated_with_faults(file, script);
         REQUIRE_FALSE(report.ok());
         CHECK(report.error().status == ExitStatus::machine);
         CHECK_MESSAGE(report.error().message.find(part) != std::string::npos,
@@ -332,7 +321,7 @@ TEST_CASE(
         CHECK(report.error().message.find("all heaters are off") != std::string::npos);
     }
     // What breaks after the print is over is no matter.
-    CHECK(simulated(file, "1e6 open tool").ok());
+    CHECK(simulated_with_faults(file, "1e6 open tool").ok());
 }
 
 TEST_CASE("heat order 3: a wait that has no end ends with all heaters off") {
@@ -340,7 +329,7 @@ TEST_CASE("heat order 3: a wait that has no end ends with all heaters off") {
     // Just too weak: within what this one may stray, and never there.
     config::Printer loose = config::generic_printer();
     loose.heaters[config::heater_tool]->guard.stray_c = 30;
-    const Result<SimulationReport> weak = simulated(file, "0 weak tool 0.455", loose);
+    const Result<SimulationReport> weak = simulated_with_faults(file, "0 weak tool 0.455", loose);
     REQUIRE_FALSE(weak.ok());
     CHECK(weak.error().status == ExitStatus::machine);
     CHECK_MESSAGE(
@@ -348,13 +337,13 @@ TEST_CASE("heat order 3: a wait that has no end ends with all heaters off") {
         weak.error().message);
     // Colder than the room.
     const Result<SimulationReport> cold =
-        simulated(write_print("heat_cooler",
-                              {draw_square,
-                               [](const Pen& pen) {
-                                   pen.layer.temperature(bed, 10, true);
-                                   draw_square(pen);
-                               }},
-                              {}, heated(210, 60)));
+        simulated_with_faults(write_print("heat_cooler",
+                                          {draw_square,
+                                           [](const Pen& pen) {
+                                               pen.layer.temperature(bed, 10, true);
+                                               draw_square(pen);
+                                           }},
+                                          {}, heated(210, 60)));
     REQUIRE_FALSE(cold.ok());
     CHECK_MESSAGE(cold.error().message.find("heater bed") != std::string::npos,
                   cold.error().message);
@@ -366,7 +355,7 @@ TEST_CASE("simulate 4: what a print is refused for was simulated cold, with a wa
     no_bed.heaters[config::heater_bed].reset();
     const auto check_refused = [](const std::string& file, const config::Printer& on,
                                   const char* part) {
-        const Result<SimulationReport> refused = simulated(file, "", on);
+        const Result<SimulationReport> refused = simulated_with_faults(file, "", on);
         REQUIRE_FALSE(refused.ok());
         CHECK(refused.error().status == ExitStatus::machine);
         CHECK_MESSAGE(refused.error().message.find(part) != std::string::npos,

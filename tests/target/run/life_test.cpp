@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "target/gpio/mock_chip.h"
+#include "target/run/patient_printer.h"
 #include "target/run/print_files.h"
 #include "target/run/simulate.h"
 
@@ -17,21 +18,6 @@ using namespace lyr::run;
 using namespace lyr::tests;
 
 namespace {
-
-constexpr format::Heater tool{format::HeaterKind::tool, 0}, bed{format::HeaterKind::bed, 0};
-
-StateChange heated(double tool_c, double bed_c) {
-    return [=](format::LayerState& state) {
-        state.temperatures.push_back({bed, bed_c});
-        state.temperatures.push_back({tool, tool_c});
-    };
-}
-
-config::Printer parking_printer() {
-    config::Printer printer = config::generic_printer();
-    printer.pause.park_mm = {{5, 120}};
-    return printer;
-}
 
 Result<SimulationReport> simulated(const std::string& file, const std::string& script,
                                    const config::Printer& printer = parking_printer(),
@@ -42,10 +28,6 @@ Result<SimulationReport> simulated(const std::string& file, const std::string& s
     job.script = *commands;
     job.no_heat = no_heat;
     return simulate(job);
-}
-
-std::string message_of(const Result<SimulationReport>& report) {
-    return report ? std::string() : to_string(report.error());
 }
 
 void check_same_path(const SimulationReport& a, const SimulationReport& b) {

@@ -45,12 +45,12 @@ private:
     bool released_ = false;
 };
 
-struct Bench {
+struct KeptLines {
     std::string path = (std::filesystem::temp_directory_path() / "lyr_run_keeper").string();
     std::string dropped = path + "_dropped";
 
-    Bench() { remove(); }
-    ~Bench() { remove(); }
+    KeptLines() { remove(); }
+    ~KeptLines() { remove(); }
     void remove() const {
         std::filesystem::remove(path);
         std::filesystem::remove(dropped);
@@ -103,7 +103,7 @@ bool ends_by(int signal, const std::function<void()>& work) {
 }  // namespace
 
 TEST_CASE("line keeper 1: writes are carried out, and what fails comes back") {
-    const Bench bench;
+    const KeptLines bench;
     {
         auto chip = bench.keep();
         REQUIRE(chip.ok());
@@ -133,7 +133,7 @@ TEST_CASE("line keeper 1: writes are carried out, and what fails comes back") {
 TEST_CASE("line keeper 2: however the program ends, the lines go off") {
     for (const int signal : {SIGKILL, SIGSEGV, SIGABRT, SIGTERM}) {
         CAPTURE(signal);
-        const Bench bench;
+        const KeptLines bench;
         CHECK(ends_by(signal, [&] {
             auto chip = bench.keep();
             if (!chip) ::_exit(1);
@@ -147,7 +147,7 @@ TEST_CASE("line keeper 2: however the program ends, the lines go off") {
 }
 
 TEST_CASE("line keeper 2: a program that goes silent loses its lines") {
-    const Bench bench;
+    const KeptLines bench;
     auto chip = bench.keep(200);
     REQUIRE(chip.ok());
     for (int i = 0; i < 10; ++i) {
@@ -161,7 +161,7 @@ TEST_CASE("line keeper 2: a program that goes silent loses its lines") {
 }
 
 TEST_CASE("line keeper 2: a program that was stopped and goes on blamed its keeper") {
-    const Bench bench;
+    const KeptLines bench;
     auto chip = bench.keep(50);
     REQUIRE(chip.ok());
     REQUIRE((*chip)->write(0b01, 0b01).ok());
@@ -174,7 +174,7 @@ TEST_CASE("line keeper 2: a program that was stopped and goes on blamed its keep
 }
 
 TEST_CASE("line keeper 3: signals to the whole group do not end the keeper before the program") {
-    const Bench bench;
+    const KeptLines bench;
     CHECK(ends_by(SIGKILL, [&] {
         ::setpgid(0, 0);
         for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::signal(signal, SIG_IGN);
@@ -188,7 +188,7 @@ TEST_CASE("line keeper 3: signals to the whole group do not end the keeper befor
 }
 
 TEST_CASE("line keeper 3: signals that ask a program to end do not end its keeper") {
-    const Bench bench;
+    const KeptLines bench;
     auto chip = bench.keep();
     REQUIRE(chip.ok());
     REQUIRE((*chip)->write(0b11, 0b01).ok());
@@ -204,7 +204,7 @@ TEST_CASE("line keeper 3: signals that ask a program to end do not end its keepe
 TEST_CASE("line keeper 3: Ctrl-Z stopped the keeper with the program, and left the heater on") {
     for (const int signal : {SIGTSTP, SIGSTOP}) {
         CAPTURE(signal);
-        const Bench bench;
+        const KeptLines bench;
         const pid_t worker = ::fork();
         if (worker == 0) {
             ::setpgid(0, 0);
@@ -227,7 +227,7 @@ TEST_CASE(
     "line keeper 3: the keeper was killed or stopped by name, and nobody switched the heater off") {
     for (const int signal : {SIGKILL, SIGSTOP}) {
         CAPTURE(signal);
-        const Bench bench;
+        const KeptLines bench;
         auto chip = bench.keep();
         REQUIRE(chip.ok());
         REQUIRE((*chip)->write(0b11, 0b11).ok());

@@ -23,4 +23,10 @@ inline config::Printer nearby_printer() {
     return printer;
 }
 
+inline config::Printer parking_printer() {
+    config::Printer printer = config::generic_printer();
+    printer.pause.park_mm = {{5, 120}};
+    return printer;
+}
+
 }  // namespace lyr::tests

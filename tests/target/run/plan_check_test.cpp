@@ -16,7 +16,7 @@ using namespace lyr::tests;
 
 namespace {
 
-const AxisValues steps_per_mm{80, 80, 400, 400};
+const AxisValues generic_steps_per_mm{80, 80, 400, 400};
 
 struct Planned {
     std::vector<Step> steps;
@@ -38,7 +38,7 @@ Planned planned(const std::string& file) {
 
 double worst(const std::vector<motion::PlannedMove>& moves, const std::vector<Step>& steps,
              std::span<const Shift> shifts = {}) {
-    PlanCheck check(steps_per_mm, {});
+    PlanCheck check(generic_steps_per_mm, {});
     check.expect(moves, shifts);
     StepPositions at{};
     for (const Step& step : steps) {
@@ -103,7 +103,7 @@ TEST_CASE("plan check 1: the filament of very many moves adds up without driftin
     for (motion::AxisLimits& axis : limits.axes) axis = {1e6, 1e8};
     auto planner = motion::Planner::create(limits);
     REQUIRE(planner.ok());
-    PlanCheck check(steps_per_mm, {});
+    PlanCheck check(generic_steps_per_mm, {});
     StepPositions at{};
     const auto plan = [&](double advance_mm) {
         REQUIRE(planner->push({motion::Line{{}, {}, advance_mm}, slow_mm_s}).ok());

@@ -114,6 +114,14 @@ inline void draw_hatch(const Pen& pen) {
                      .intervals = intervals});
 }
 
+inline void draw_small(const Pen& pen) {
+    pen.path(80);
+    pen.travel(0, 0);
+    pen.line(4, 0);
+    pen.arc(4, 4, 1);
+    pen.line(0, 0);
+}
+
 // A wall that climbs, a retraction, a rest, a change of width and speed.
 inline void draw_climb(const Pen& pen) {
     pen.path(50);
@@ -185,6 +193,21 @@ inline format::LayerState layer_state(std::size_t index) {
 }
 
 using StateChange = std::function<void(format::LayerState&)>;
+
+inline constexpr format::Heater tool{format::HeaterKind::tool, 0}, bed{format::HeaterKind::bed, 0};
+
+inline StateChange heated(double tool_c, double bed_c) {
+    return [=](format::LayerState& state) {
+        state.temperatures.push_back({bed, bed_c});
+        state.temperatures.push_back({tool, tool_c});
+    };
+}
+
+// What went wrong; empty if nothing did.
+template <class Value>
+std::string message_of(const Result<Value>& result) {
+    return result ? std::string() : to_string(result.error());
+}
 
 // One layer a drawing; returns the path of the file, in the temporary folder.
 inline std::string write_print(const std::string& name, const std::vector<Drawing>& drawings,

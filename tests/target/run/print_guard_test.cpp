@@ -56,7 +56,7 @@ private:
 
 // A hotend at 26 °C that is to reach 210. Its sensor hangs when it is told to, until the heater is off or that has taken
 // too long.
-struct Board {
+struct HangingSensor {
     config::Printer printer = config::generic_printer();
     gpio::MonotonicClock clock;
     gpio::MockChip chip{8, clock, {}};
@@ -67,7 +67,7 @@ struct Board {
     std::atomic<int> fed_meanwhile{0};
     Heating heating;
 
-    explicit Board(double longest) : longest_s(longest) {
+    explicit HangingSensor(double longest) : longest_s(longest) {
         printer.pulse.late_limit_ns = 10'000'000'000;
         printer.heaters[config::heater_bed].reset();
         std::vector<thermal::Output> outputs;
@@ -106,7 +106,7 @@ struct Board {
 }  // namespace
 
 TEST_CASE("print 8: heaters whose thread hangs go off after 3 s, and no watchdog is fed for it") {
-    Board board(5);
+    HangingSensor board(5);
     const ProgressSink watch = [&](const Progress&) { board.hangs = board.heat != 0; };
     const Result<PrintReport> report =
         print({board.file(), board.printer, false, watch}, board.chip, board.clock, &board.heating);
@@ -121,7 +121,7 @@ TEST_CASE("print 8: heaters whose thread hangs go off after 3 s, and no watchdog
 
 TEST_CASE("print 9: inputs that are lost take the heat away at once, whatever its thread does") {
     // Before the heaters would be silent.
-    Board board(2);
+    HangingSensor board(2);
     board.printer.inputs[config::input_pause] = config::Pin{"gpiochip0", 20u, false};
     auto lines =
         std::make_unique<gpio::MockInputs>(1, board.clock, [&]() -> std::optional<Diagnostic> {

@@ -34,14 +34,6 @@ std::vector<LineEvent> events_of(const std::string& file, const config::Printer&
     }
 }
 
-void draw_small(const Pen& pen) {
-    pen.path(80);
-    pen.travel(0, 0);
-    pen.line(4, 0);
-    pen.arc(4, 4, 1);
-    pen.line(0, 0);
-}
-
 constexpr std::size_t lines = 8;
 
 }  // namespace

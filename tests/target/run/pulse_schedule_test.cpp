@@ -15,7 +15,7 @@ using namespace lyr::run;
 
 namespace {
 
-const config::PulseTiming timing{2'000, 3'000, 700, 400, 5'000'000};
+const config::PulseTiming driver_timing{2'000, 3'000, 700, 400, 5'000'000};
 
 std::vector<LineEvent> schedule_all(const std::vector<Step>& steps, PulseSchedule& schedule) {
     std::vector<LineEvent> events;
@@ -42,11 +42,12 @@ void decode(const std::vector<LineEvent>& events, Decoded& decoded) {
 void check_times_of_driver(const PulseDecoder& decoder) {
     for (std::size_t i = 0; i < config::axis_count; ++i) {
         const PulseFigures& figures = decoder.figures(i);
-        if (figures.shortest_high_ns) CHECK(*figures.shortest_high_ns >= timing.high_ns);
-        if (figures.shortest_low_ns) CHECK(*figures.shortest_low_ns >= timing.low_ns);
+        if (figures.shortest_high_ns) CHECK(*figures.shortest_high_ns >= driver_timing.high_ns);
+        if (figures.shortest_low_ns) CHECK(*figures.shortest_low_ns >= driver_timing.low_ns);
         if (figures.shortest_setup_ns)
-            CHECK(*figures.shortest_setup_ns >= timing.direction_setup_ns);
-        if (figures.shortest_hold_ns) CHECK(*figures.shortest_hold_ns >= timing.direction_hold_ns);
+            CHECK(*figures.shortest_setup_ns >= driver_timing.direction_setup_ns);
+        if (figures.shortest_hold_ns)
+            CHECK(*figures.shortest_hold_ns >= driver_timing.direction_hold_ns);
     }
 }
 
@@ -68,7 +69,7 @@ TEST_CASE("schedule 1: slow steps come exactly at their times") {
     std::vector<Step> steps;
     for (int i = 0; i < 100; ++i)
         steps.push_back({i * 10'000, static_cast<std::uint8_t>(i % 4), (i / 10) % 2 == 0});
-    PulseSchedule schedule(timing, 0);
+    PulseSchedule schedule(driver_timing, 0);
     Decoded decoded;
     decode(schedule_all(steps, schedule), decoded);
     CHECK(schedule.shift_ns() == 0);
@@ -85,7 +86,7 @@ TEST_CASE(
     "schedule 1, 2, 3, decoder 1, 2: random steps keep order, number and the driver's times") {
     for (const std::int64_t mean_gap_ns : {200, 1'500, 4'000, 40'000}) {
         const std::vector<Step> steps = random_steps(20'000, mean_gap_ns, 5);
-        PulseSchedule schedule(timing, 0);
+        PulseSchedule schedule(driver_timing, 0);
         Decoded decoded;
         decode(schedule_all(steps, schedule), decoded);
         REQUIRE(decoded.steps.size() == steps.size());
@@ -109,7 +110,7 @@ TEST_CASE(
 
 TEST_CASE("schedule 3: the shifts listed say how late each step is") {
     const std::vector<Step> steps = random_steps(5'000, 3'000, 9);
-    PulseSchedule schedule(timing, 0);
+    PulseSchedule schedule(driver_timing, 0);
     Decoded decoded;
     decode(schedule_all(steps, schedule), decoded);
     const std::vector<Shift> shifts = schedule.take_shifts();
@@ -129,7 +130,7 @@ TEST_CASE("schedule 3: the shifts listed say how late each step is") {
 TEST_CASE(
     "schedule 4: events are in order, each nanosecond once, and keep the idle lines to the end") {
     const gpio::LineMask enable = gpio::line_bit(8) | gpio::line_bit(9);
-    PulseSchedule schedule(timing, enable);
+    PulseSchedule schedule(driver_timing, enable);
     std::vector<LineEvent> events = schedule_all(random_steps(5'000, 2'000, 3), schedule);
     CHECK(events.back().levels == 0);
     CHECK(events.back().time_ns > events[events.size() - 2].time_ns);
@@ -143,7 +144,7 @@ TEST_CASE(
 }
 
 TEST_CASE("schedule 4: steps of the same nanosecond leave in one event") {
-    PulseSchedule schedule(timing, 0);
+    PulseSchedule schedule(driver_timing, 0);
     const std::vector<LineEvent> events =
         schedule_all({{9'000, 0, false}, {9'000, 1, false}, {9'000, 3, false}}, schedule);
     REQUIRE(events.size() == 2);
@@ -154,7 +155,7 @@ TEST_CASE("schedule 4: steps of the same nanosecond leave in one event") {
 
 TEST_CASE("schedule 2: what ends as it began leaves direction lines steady for what comes next") {
     const gpio::LineMask idle = direction_bit(0) | gpio::line_bit(8);
-    PulseSchedule schedule(timing, idle);
+    PulseSchedule schedule(driver_timing, idle);
     std::vector<LineEvent> events;
     schedule.begin(0, events);
     schedule.append(std::vector<Step>{{50'000, 0, false}, {60'000, 1, true}}, events);
@@ -167,14 +168,14 @@ TEST_CASE("schedule 2: what ends as it began leaves direction lines steady for w
         --turned;
     CHECK(events[turned].levels == idle);
     CHECK(events.back().levels == idle);
-    CHECK(events.back().time_ns - events[turned].time_ns >= timing.direction_setup_ns);
+    CHECK(events.back().time_ns - events[turned].time_ns >= driver_timing.direction_setup_ns);
 }
 
 TEST_CASE("schedule: appended in pieces of any size it gives the same events") {
     const std::vector<Step> steps = random_steps(3'000, 2'500, 17);
-    PulseSchedule whole(timing, 0);
+    PulseSchedule whole(driver_timing, 0);
     const std::vector<LineEvent> expected = schedule_all(steps, whole);
-    PulseSchedule pieces(timing, 0);
+    PulseSchedule pieces(driver_timing, 0);
     std::vector<LineEvent> events;
     for (std::size_t i = 0; i < steps.size();) {
         const std::size_t size = std::min<std::size_t>(1 + i % 7, steps.size() - i);

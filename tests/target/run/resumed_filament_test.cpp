@@ -17,9 +17,7 @@ using namespace lyr::tests;
 
 namespace {
 
-constexpr std::size_t line_count = 8;
-
-void draw_stroke(const Pen& pen) {
+void draw_first_stroke(const Pen& pen) {
     pen.path(80);
     pen.line(4, 0);
 }
@@ -103,7 +101,7 @@ TEST_CASE("resumption 5: after a loss of power in a change of filament the print
 TEST_CASE("print 7: a print in real time begins with the filament as the journal has it") {
     config::Printer printer = nearby_printer();
     printer.filament = {2, 2, 1, 20};
-    const std::string file = write_print("resume_real", {draw_stroke, draw_stroke});
+    const std::string file = write_print("resume_real", {draw_first_stroke, draw_first_stroke});
     const auto resumed_mm = [&](std::int32_t drawn_back_um, bool is_unloaded) {
         JournalEntry entry;
         entry.layer = 2;

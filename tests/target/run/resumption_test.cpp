@@ -23,16 +23,6 @@ using namespace lyr::tests;
 
 namespace {
 
-constexpr std::size_t line_count = 8;
-
-void draw_small(const Pen& pen) {
-    pen.path(80);
-    pen.travel(0, 0);
-    pen.line(4, 0);
-    pen.arc(4, 4, 1);
-    pen.line(0, 0);
-}
-
 // Absolute, in mm, as the steps say.
 double end_mm(const SimulationReport& report, std::size_t axis) {
     return report.printer.start_mm[axis] +

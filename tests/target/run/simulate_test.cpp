@@ -16,7 +16,7 @@ using namespace lyr::tests;
 
 namespace {
 
-SimulationReport simulated(const std::string& file,
+SimulationReport report_of(const std::string& file,
                            const config::Printer& printer = config::generic_printer(),
                            std::optional<std::string> trace = {}) {
     Result<SimulationReport> report = simulate({file, printer, std::move(trace), {}, {}, true});
@@ -87,7 +87,7 @@ TEST_CASE(
                 const std::string file =
                     write_print("case" + std::to_string(number++ % 4), {what.drawing, what.drawing},
                                 {angle_rad, mirrored, 40, 30});
-                const SimulationReport report = simulated(file);
+                const SimulationReport report = report_of(file);
                 check_half_step(report);
                 CHECK(report.positions == expected_end(file, report.printer));
                 CHECK(report.inspection.totals.layers == 2);
@@ -99,14 +99,14 @@ TEST_CASE("simulate 2, 3: on coarse and fine machines, and from another start") 
     for (const Case& what : all_cases()) drawings.push_back(what.drawing);
     const std::string file = write_print("machines", drawings);
     for (const config::Printer& printer : {coarse_printer(), fine_printer()}) {
-        const SimulationReport report = simulated(file, printer);
+        const SimulationReport report = report_of(file, printer);
         check_half_step(report);
         CHECK(report.positions == expected_end(file, printer));
     }
 }
 
 TEST_CASE("simulate: the report's figures are those of the drawing") {
-    const SimulationReport report = simulated(write_print("figures", {draw_square}));
+    const SimulationReport report = report_of(write_print("figures", {draw_square}));
     const PathTotals& totals = report.inspection.totals;
     CHECK(totals.extruded_mm == doctest::Approx(80));
     const double area_mm2 = (0.45 - 0.2) * 0.2 + std::numbers::pi / 4 * 0.2 * 0.2;
@@ -136,7 +136,7 @@ TEST_CASE("simulate 4: the wave decodes to the same positions, with the driver's
     const std::string trace = file + ".vcd";
     config::Printer printer = config::generic_printer();
     printer.axes[config::axis_x].enable = config::Pin{"gpiochip0", 22u, true};
-    const SimulationReport report = simulated(file, printer, trace);
+    const SimulationReport report = report_of(file, printer, trace);
     const Wave wave = read_wave(trace);
     CHECK(wave.wires.size() == 9);
     std::map<std::string, char> level;
@@ -196,8 +196,8 @@ TEST_CASE(
 TEST_CASE("simulate: without a trace nothing but the report differs from a run with one") {
     const std::string file = write_print("same", {draw_arcs});
     const std::string trace = file + ".vcd";
-    const SimulationReport with = simulated(file, config::generic_printer(), trace);
-    const SimulationReport without = simulated(file);
+    const SimulationReport with = report_of(file, config::generic_printer(), trace);
+    const SimulationReport without = report_of(file);
     CHECK(json_of(with) == json_of(without));
     std::filesystem::remove(trace);
 }
@@ -226,7 +226,7 @@ TEST_CASE(
     config::Printer printer = config::generic_printer();
     printer.pulse.direction_setup_ns = 4'000'000;
     printer.pulse.direction_hold_ns = 4'000'000;
-    const SimulationReport report = simulated(write_print("slow_turn", {draw_circles}), printer);
+    const SimulationReport report = report_of(write_print("slow_turn", {draw_circles}), printer);
     CHECK(report.delayed_ns > 0);
     check_half_step(report);
 }

@@ -11,8 +11,6 @@ using namespace lyr::tests;
 
 namespace {
 
-constexpr format::Heater tool{format::HeaterKind::tool, 0}, bed{format::HeaterKind::bed, 0};
-
 std::string heated_file(const std::string& name) {
     return write_print(name, {draw_square}, {}, [](format::LayerState& state) {
         state.temperatures.push_back({bed, 60});

@@ -26,7 +26,7 @@ void draw_teeth(const Pen& pen) {
     for (int i = 0; i < 120; ++i) pen.line(i % 2, 0.1 * i);
 }
 
-std::string long_print() {
+std::string print_of_teeth() {
     return write_print("stream_beside", std::vector<Drawing>(16, draw_teeth));
 }
 
@@ -66,7 +66,7 @@ std::vector<LineEvent> read(const std::string& file, const config::Printer& prin
 }  // namespace
 
 TEST_CASE("stream beside 1: portions are those of the stream, and bring the same along") {
-    const std::string file = long_print();
+    const std::string file = print_of_teeth();
     config::Printer crossed = config::generic_printer();
     crossed.kinematics = config::Kinematics::corexy;
     for (const config::Printer& printer : {config::generic_printer(), crossed})
@@ -101,7 +101,7 @@ TEST_CASE("stream beside 1: portions are those of the stream, and bring the same
 
 TEST_CASE(
     "stream beside 2: a change of speed shows at the same event, whichever thread is quicker") {
-    const std::string file = long_print();
+    const std::string file = print_of_teeth();
     const config::Printer printer = config::generic_printer();
     const std::vector<LineEvent> plain = read(file, printer, half_second_ns, 5, 1, false);
     const std::vector<LineEvent> faster = read(file, printer, half_second_ns, 5, 1.5F, false);
@@ -110,7 +110,7 @@ TEST_CASE(
 }
 
 TEST_CASE("stream beside 3: what nobody takes is left undone, and an error comes in its place") {
-    const std::string file = long_print();
+    const std::string file = print_of_teeth();
     const config::Printer printer = config::generic_printer();
     const std::atomic<float> factor{1};
     { const StreamBeside left(stream_of(file, printer), factor, unlimited_ns); }
