@@ -1,20 +1,9 @@
 // Prints in other formats, as a user asks for them.
 
-#include "apps/program.h"
-#include "target/run/print_files.h"
+#include "apps/with_print.h"
 
 using namespace lyr;
 using namespace lyr::tests;
-
-namespace {
-
-Folder with_print(const std::string& name) {
-    Folder folder(name);
-    fs::copy_file(write_print(name, {draw_square, draw_arcs, draw_hatch}), folder / "a.lyr");
-    return folder;
-}
-
-}  // namespace
 
 TEST_CASE("lyrview: the ending says what is written, and --to over it") {
     const Folder folder = with_print("export-endings");

@@ -56,7 +56,7 @@ struct Scene {
     }
 };
 
-void check_failure(const Ended& ended, int status, const std::string& part) {
+void check_lyrctl_failure(const Ended& ended, int status, const std::string& part) {
     check_failure(ended, "lyrctl", status, part);
 }
 
@@ -101,27 +101,27 @@ TEST_CASE("lyrctl: each command arrives as what it says") {
 
 TEST_CASE("lyrctl: what is wrong comes as one line and with its status") {
     Scene scene("lyrctl-wrong");
-    check_failure(scene.lyrctl(""), 2, "a command is required");
-    check_failure(scene.lyrctl("puase"), 2, "did you mean pause?");
-    check_failure(scene.lyrctl("pause now"), 2, "unexpected argument \"now\"");
-    check_failure(scene.lyrctl("pause --json"), 2, "go with status");
-    check_failure(scene.lyrctl("set"), 2, "tool=210");
-    check_failure(scene.lyrctl("set nozzle=210"), 2, "nozzle=210");
+    check_lyrctl_failure(scene.lyrctl(""), 2, "a command is required");
+    check_lyrctl_failure(scene.lyrctl("puase"), 2, "did you mean pause?");
+    check_lyrctl_failure(scene.lyrctl("pause now"), 2, "unexpected argument \"now\"");
+    check_lyrctl_failure(scene.lyrctl("pause --json"), 2, "go with status");
+    check_lyrctl_failure(scene.lyrctl("set"), 2, "tool=210");
+    check_lyrctl_failure(scene.lyrctl("set nozzle=210"), 2, "nozzle=210");
     for (const char* bad :
          {"tool", "tool=", "tool=hot", "tool=50%", "fan=1", "fan=%", "speed=nan%"})
-        check_failure(scene.lyrctl(std::string("set ") + bad), 2, "expected");
+        check_lyrctl_failure(scene.lyrctl(std::string("set ") + bad), 2, "expected");
     // What no printer does was sent, and came back as an error of the machine.
     for (const char* bad : {"speed=1000%", "speed=9%", "speed=-50%"})
-        check_failure(scene.lyrctl(std::string("set ") + bad), 2, "from 10 to 300 and %");
-    check_failure(scene.lyrctl("set fan=101%"), 2, "from 0 to 100 and %");
-    check_failure(scene.lyrctl("set bed=1001"), 2, "°C, from 0 to 1000");
+        check_lyrctl_failure(scene.lyrctl(std::string("set ") + bad), 2, "from 10 to 300 and %");
+    check_lyrctl_failure(scene.lyrctl("set fan=101%"), 2, "from 0 to 100 and %");
+    check_lyrctl_failure(scene.lyrctl("set bed=1001"), 2, "°C, from 0 to 1000");
     for (const char* port : {"", "http", "-1", "65536", "80.5", "80 81"})
-        check_failure(scene.lyrctl(std::string("web ") + port), 2, "web: expected a port");
-    check_failure(scene.lyrctl("pause --token token"), 2, "--token goes with web");
-    check_failure(scene.lyrctl("resume"), 7, "cannot resume: the print is printing");
-    check_failure(scene.lyrctl("set tool=400"), 7, "goes up to 270");
-    check_failure(scene.lyrctl("status --socket nowhere.sock"), 7, "no printer is at work");
-    check_failure(scene.lyrctl("status >/dev/full"), 6, "");
+        check_lyrctl_failure(scene.lyrctl(std::string("web ") + port), 2, "web: expected a port");
+    check_lyrctl_failure(scene.lyrctl("pause --token token"), 2, "--token goes with web");
+    check_lyrctl_failure(scene.lyrctl("resume"), 7, "cannot resume: the print is printing");
+    check_lyrctl_failure(scene.lyrctl("set tool=400"), 7, "goes up to 270");
+    check_lyrctl_failure(scene.lyrctl("status --socket nowhere.sock"), 7, "no printer is at work");
+    check_lyrctl_failure(scene.lyrctl("status >/dev/full"), 6, "");
     CHECK_FALSE(scene.print.take());
     const Ended help = scene.lyrctl("--help");
     CHECK(help.status == 0);
@@ -135,12 +135,12 @@ TEST_CASE(
     Scene scene("lyrctl-find");
     auto other = control::Listener::open(scene.folder / "lyr/b.sock");
     REQUIRE(other.ok());
-    check_failure(scene.lyrctl("status"), 2, "lyr/b.sock");
+    check_lyrctl_failure(scene.lyrctl("status"), 2, "lyr/b.sock");
     CHECK(scene.lyrctl("status --socket lyr/a.sock").status == 0);
     fs::remove(scene.folder / "lyr/b.sock");
     CHECK(scene.lyrctl("status").status == 0);
     scene.server.reset();
-    check_failure(scene.lyrctl("status"), 7, "there is no socket in /run/lyr, ");
+    check_lyrctl_failure(scene.lyrctl("status"), 7, "there is no socket in /run/lyr, ");
 }
 
 TEST_CASE("lyrctl: --watch goes on until the print is over and ends as it did") {

@@ -15,7 +15,7 @@ constexpr bool is_sanitized = true;
 constexpr bool is_sanitized = false;
 #endif
 
-Folder with_printer() {
+Folder with_cartesian() {
     Folder folder("board");
     folder.copy("printers/cartesian.toml", "p.toml");
     return folder;
@@ -24,7 +24,7 @@ Folder with_printer() {
 }  // namespace
 
 TEST_CASE("lyrrun --check: a board without the printer's lines fails, in words and in JSON") {
-    const Folder folder = with_printer();
+    const Folder folder = with_cartesian();
     const Ended words = folder.run(
         "sed -i s/pinctrl-bcm2835/no-such-chip/ p.toml\n"
         "lyrrun --check --printer p.toml");
@@ -40,14 +40,14 @@ TEST_CASE("lyrrun --check: a board without the printer's lines fails, in words a
 }
 
 TEST_CASE("lyrrun --off: takes the lines, or says which one it cannot have") {
-    const Folder folder = with_printer();
+    const Folder folder = with_cartesian();
     check_failure(folder.run("sed -i s/pinctrl-bcm2835/no-such-chip/ p.toml\n"
                              "lyrrun --off --printer p.toml"),
                   "lyrrun", 7, "axis.x.step: cannot open GPIO chip no-such-chip");
 }
 
 TEST_CASE("lyrrun --measure-latency: what it prints is a section that the printer's file takes") {
-    const Folder folder = with_printer();
+    const Folder folder = with_cartesian();
     const Ended measured = folder.run(
         "lyrrun --measure-latency --seconds 0.3 --printer p.toml >> p.toml &&\n"
         "lyrrun --measure-latency --seconds 0.1 --printer p.toml");
@@ -77,7 +77,7 @@ TEST_CASE("lyrrun: a board that is late is planned slower") {
 }
 
 TEST_CASE("lyrrun --check, --measure-latency: what makes no sense together is refused") {
-    const Folder folder = with_printer();
+    const Folder folder = with_cartesian();
     for (const char* options :
          {"--check --measure-latency", "--check --lines", "--lines", "--check --simulate",
           "--measure-latency --json", "--check part.lyr", "--check --tune tool=200",

@@ -13,10 +13,6 @@ using nlohmann::json;
 
 namespace {
 
-void check_failure(const Ended& ended, int status, const std::string& part) {
-    check_failure(ended, "lyrrun", status, part);
-}
-
 // Some minutes of it.
 std::string write_long(const std::string& name) {
     return write_print(name, std::vector<Drawing>(60, draw_circles));
@@ -28,11 +24,11 @@ void draw_short(const Pen& pen) {
 }
 
 // lyrrun in the folder of its sockets; it is stopped when the test is over.
-struct Scene {
+struct RunningPrint {
     Folder folder;
     Running print;
 
-    explicit Scene(const std::string& name, std::vector<std::string> more = {})
+    explicit RunningPrint(const std::string& name, std::vector<std::string> more = {})
         : folder(name), print(folder, arguments(name, std::move(more)), folder / "err") {
         REQUIRE(print.wait_for([&] { return fs::exists(folder / "s"); }));
     }
@@ -69,7 +65,7 @@ TEST_CASE("lyrrun: a dry run takes the print's time, needs no lines and reports"
 }
 
 TEST_CASE("lyrctl: pauses, resumes, slows down and cancels a print") {
-    const Scene scene("lyrrun-controlled");
+    const RunningPrint scene("lyrrun-controlled");
     CHECK(scene.becomes("printing"));
     const json begun = scene.status();
     CHECK(begun["layers"] == 60);
@@ -93,7 +89,7 @@ TEST_CASE("lyrctl: pauses, resumes, slows down and cancels a print") {
 
 #ifndef __SANITIZE_ADDRESS__
 TEST_CASE("lyrrun: a print takes little memory (the locked stacks of its threads had 32 MB)") {
-    const Scene scene("lyrrun-memory");
+    const RunningPrint scene("lyrrun-memory");
     CHECK(scene.becomes("printing"));
     const long resident_kb = scene.print.resident_kb();
     CHECK(resident_kb > 0);
@@ -140,7 +136,7 @@ TEST_CASE("lyrrun: beside a stopped terminal or a full pipe the last message nev
             CAPTURE(cancels);
             const Folder folder("lyrrun-silenced");
             const Silenced silenced(folder, is_terminal);
-            const Running print(folder, Scene::arguments("silenced", {}), silenced.name());
+            const Running print(folder, RunningPrint::arguments("silenced", {}), silenced.name());
             REQUIRE(print.wait_for([&] {
                 return folder.run("lyrctl status --socket s").out.find("printing") !=
                        std::string::npos;
@@ -153,7 +149,7 @@ TEST_CASE("lyrrun: beside a stopped terminal or a full pipe the last message nev
 }
 
 TEST_CASE("lyrctl: an emergency stop ends the print at once") {
-    const Scene scene("lyrrun-emergency");
+    const RunningPrint scene("lyrrun-emergency");
     CHECK(scene.becomes("printing"));
     CHECK(scene.lyrctl("stop").status == 0);
     CHECK(scene.print.end(0) == 8);
@@ -161,14 +157,14 @@ TEST_CASE("lyrctl: an emergency stop ends the print at once") {
 }
 
 TEST_CASE("lyrrun: one server a socket; the socket of a killed one is taken over") {
-    const Scene scene("lyrrun-socket");
+    const RunningPrint scene("lyrrun-socket");
     const std::string again = "lyrrun " + write_long("again") + " --dry-run --no-heat --socket s";
-    check_failure(scene.folder.run(again), 7, "s: error: this socket is served already");
+    check_lyrrun_failure(scene.folder.run(again), 7, "s: error: this socket is served already");
     CHECK(scene.becomes("printing"));
     CHECK(scene.print.end(SIGKILL) == -1);
     CHECK(fs::exists(scene.folder / "s"));
     CHECK(scene.lyrctl("status").status == 7);
-    const Running next(scene.folder, Scene::arguments("next", {}), scene.folder / "err");
+    const Running next(scene.folder, RunningPrint::arguments("next", {}), scene.folder / "err");
     CHECK(next.wait_for([&] { return scene.lyrctl("status").status == 0; }));
     CHECK(next.end(SIGTERM) == 8);
     CHECK_FALSE(fs::exists(scene.folder / "s"));
@@ -177,7 +173,7 @@ TEST_CASE("lyrrun: one server a socket; the socket of a killed one is taken over
 TEST_CASE("lyrrun: options of control that make no sense") {
     const Folder folder("lyrrun-options");
     const std::string print = "lyrrun " + write_print("options", {draw_square});
-    check_failure(folder.run(print + " --dry-run --simulate"), 2, "--simulate");
-    check_failure(folder.run(print + " --simulate --socket s"), 2, "--simulate");
-    check_failure(folder.run(print + " --dry-run --no-heat --socket none/s"), 7, "none/s");
+    check_lyrrun_failure(folder.run(print + " --dry-run --simulate"), 2, "--simulate");
+    check_lyrrun_failure(folder.run(print + " --simulate --socket s"), 2, "--simulate");
+    check_lyrrun_failure(folder.run(print + " --dry-run --no-heat --socket none/s"), 7, "none/s");
 }

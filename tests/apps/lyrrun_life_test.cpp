@@ -9,7 +9,7 @@ using namespace lyr::tests;
 
 namespace {
 
-void draw_short(const Pen& pen) {
+void draw_millimetre(const Pen& pen) {
     pen.path();
     pen.line(1, 0);
 }
@@ -21,7 +21,7 @@ struct CutOff {
 
     explicit CutOff(const std::string& name, const run::JournalEntry& what = {})
         : folder("lyrrun_" + name),
-          file(write_print(name, std::vector<Drawing>(3, draw_short))),
+          file(write_print(name, std::vector<Drawing>(3, draw_millimetre))),
           journal(file + ".journal") {
         folder.write("p.toml", printer());
         fs::remove(journal);

@@ -12,10 +12,6 @@ Ended lyrrun(const std::string& arguments) {
     return Folder("lyrrun").run("lyrrun " + arguments);
 }
 
-void check_failure(const Ended& ended, int status, const std::string& part) {
-    check_failure(ended, "lyrrun", status, part);
-}
-
 }  // namespace
 
 TEST_CASE("lyrrun: a simulation reports on stdout and says nothing on a pipe's stderr") {
@@ -45,21 +41,25 @@ TEST_CASE("lyrrun: help has examples and the exit status") {
 
 TEST_CASE("lyrrun: what is wrong comes as one line and with its status") {
     const std::string good = write_print("good", {draw_square, draw_arcs, draw_hatch});
-    check_failure(lyrrun("/nonexistent.lyr --simulate"), 3, "/nonexistent.lyr");
-    check_failure(lyrrun(LYR_FIXTURES "/printers/generic.toml --simulate"), 3, "generic.toml");
-    check_failure(lyrrun("/dev/null --simulate"), 3, "/dev/null");
-    check_failure(lyrrun("/tmp --simulate"), 3, "/tmp");
-    check_failure(lyrrun(""), 2, "--help");
-    check_failure(lyrrun("- --simulate"), 2, "standard input");
-    check_failure(lyrrun(good), 2, "--printer");
-    check_failure(lyrrun(good + " --simulate --colour"), 2, "--colour");
-    check_failure(lyrrun(good + " --trace x.vcd --printer x.toml"), 2, "--simulate");
-    check_failure(lyrrun(good + " --simulate --printer /nonexistent.toml"), 3, "/nonexistent.toml");
-    check_failure(lyrrun(good + " --simulate --trace /nonexistent/out.vcd"), 6, "/nonexistent");
-    check_failure(lyrrun(good + " --no-heat --printer " LYR_FIXTURES "/printers/generic.toml"), 7,
-                  "axis.x.step");
-    check_failure(lyrrun(good + " --printer " LYR_FIXTURES "/printers/generic.toml"), 7,
-                  "heater.tool.min_extrude_c");
+    check_lyrrun_failure(lyrrun("/nonexistent.lyr --simulate"), 3, "/nonexistent.lyr");
+    check_lyrrun_failure(lyrrun(LYR_FIXTURES "/printers/generic.toml --simulate"), 3,
+                         "generic.toml");
+    check_lyrrun_failure(lyrrun("/dev/null --simulate"), 3, "/dev/null");
+    check_lyrrun_failure(lyrrun("/tmp --simulate"), 3, "/tmp");
+    check_lyrrun_failure(lyrrun(""), 2, "--help");
+    check_lyrrun_failure(lyrrun("- --simulate"), 2, "standard input");
+    check_lyrrun_failure(lyrrun(good), 2, "--printer");
+    check_lyrrun_failure(lyrrun(good + " --simulate --colour"), 2, "--colour");
+    check_lyrrun_failure(lyrrun(good + " --trace x.vcd --printer x.toml"), 2, "--simulate");
+    check_lyrrun_failure(lyrrun(good + " --simulate --printer /nonexistent.toml"), 3,
+                         "/nonexistent.toml");
+    check_lyrrun_failure(lyrrun(good + " --simulate --trace /nonexistent/out.vcd"), 6,
+                         "/nonexistent");
+    check_lyrrun_failure(
+        lyrrun(good + " --no-heat --printer " LYR_FIXTURES "/printers/generic.toml"), 7,
+        "axis.x.step");
+    check_lyrrun_failure(lyrrun(good + " --printer " LYR_FIXTURES "/printers/generic.toml"), 7,
+                         "heater.tool.min_extrude_c");
 }
 
 TEST_CASE("lyrrun: a file that is cut short names the last whole layer") {
@@ -68,7 +68,7 @@ TEST_CASE("lyrrun: a file that is cut short names the last whole layer") {
     const std::string cut = good + ".cut";
     std::ofstream(cut, std::ios::binary)
         .write(bytes.data(), static_cast<std::streamsize>(bytes.size() - 60));
-    check_failure(lyrrun(cut + " --simulate"), 3, "layer");
+    check_lyrrun_failure(lyrrun(cut + " --simulate"), 3, "layer");
     std::filesystem::remove(cut);
 }
 
@@ -79,7 +79,7 @@ TEST_CASE("lyrrun: a damaged byte is found") {
     const std::string bad = good + ".bad";
     std::ofstream(bad, std::ios::binary)
         .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    check_failure(lyrrun(bad + " --simulate --no-heat"), 3, "");
+    check_lyrrun_failure(lyrrun(bad + " --simulate --no-heat"), 3, "");
     std::filesystem::remove(bad);
 }
 
@@ -128,17 +128,19 @@ TEST_CASE("lyrrun: --faults breaks the simulation, and the guard's message is th
     const Folder folder("lyrrun-faults");
     fs::copy_file(write_heated("faults"), folder / "a.lyr");
     folder.write("faults.txt", "# after half a minute\n30 open tool\n");
-    check_failure(folder.run("lyrrun a.lyr --simulate --faults faults.txt"), 7,
-                  "after 30.3 s, in layer 1: heater tool: ");
-    check_failure(folder.run("echo 5 silent | lyrrun a.lyr --simulate --faults -"), 7, "silent");
+    check_lyrrun_failure(folder.run("lyrrun a.lyr --simulate --faults faults.txt"), 7,
+                         "after 30.3 s, in layer 1: heater tool: ");
+    check_lyrrun_failure(folder.run("echo 5 silent | lyrrun a.lyr --simulate --faults -"), 7,
+                         "silent");
     folder.write("bad.txt", "5 open tool\n5 opne tool\n");
-    check_failure(folder.run("lyrrun a.lyr --simulate --faults bad.txt"), 3, "bad.txt:2");
-    check_failure(folder.run("lyrrun a.lyr --simulate --faults none.txt"), 3, "none.txt");
-    check_failure(folder.run("lyrrun a.lyr --faults faults.txt --printer p.toml"), 2, "--simulate");
-    check_failure(folder.run("lyrrun a.lyr --simulate --no-heat --faults faults.txt"), 2,
-                  "--no-heat");
-    check_failure(folder.run("lyrrun a.lyr --simulate --faults - --printer - </dev/null"), 2,
-                  "standard input");
+    check_lyrrun_failure(folder.run("lyrrun a.lyr --simulate --faults bad.txt"), 3, "bad.txt:2");
+    check_lyrrun_failure(folder.run("lyrrun a.lyr --simulate --faults none.txt"), 3, "none.txt");
+    check_lyrrun_failure(folder.run("lyrrun a.lyr --faults faults.txt --printer p.toml"), 2,
+                         "--simulate");
+    check_lyrrun_failure(folder.run("lyrrun a.lyr --simulate --no-heat --faults faults.txt"), 2,
+                         "--no-heat");
+    check_lyrrun_failure(folder.run("lyrrun a.lyr --simulate --faults - --printer - </dev/null"), 2,
+                         "standard input");
 }
 
 TEST_CASE(
@@ -155,20 +157,23 @@ TEST_CASE(
     folder.write("p.toml", printer);
     fs::copy_file(write_heated("tuned"), folder / "a.lyr");
     CHECK(folder.run("lyrrun a.lyr --simulate --printer p.toml").status == 0);
-    check_failure(folder.run("lyrrun --tune tool=210"), 2, "--printer");
-    check_failure(folder.run("lyrrun --tune tool --simulate"), 2, "tool, bed or chamber");
-    check_failure(folder.run("lyrrun --tune nose=20 --simulate"), 2, "tool, bed or chamber");
-    check_failure(folder.run("lyrrun --tune tool=nan --simulate"), 2, "tool, bed or chamber");
-    check_failure(folder.run("lyrrun a.lyr --tune tool=210 --simulate"), 2, "without a print");
-    check_failure(folder.run("lyrrun --tune chamber=40 --simulate"), 7, "no heater.chamber");
-    check_failure(folder.run("lyrrun --tune tool=274 --simulate"), 7, "range_c");
+    check_lyrrun_failure(folder.run("lyrrun --tune tool=210"), 2, "--printer");
+    check_lyrrun_failure(folder.run("lyrrun --tune tool --simulate"), 2, "tool, bed or chamber");
+    check_lyrrun_failure(folder.run("lyrrun --tune nose=20 --simulate"), 2, "tool, bed or chamber");
+    check_lyrrun_failure(folder.run("lyrrun --tune tool=nan --simulate"), 2,
+                         "tool, bed or chamber");
+    check_lyrrun_failure(folder.run("lyrrun a.lyr --tune tool=210 --simulate"), 2,
+                         "without a print");
+    check_lyrrun_failure(folder.run("lyrrun --tune chamber=40 --simulate"), 7, "no heater.chamber");
+    check_lyrrun_failure(folder.run("lyrrun --tune tool=274 --simulate"), 7, "range_c");
     // It took two hours to find that out.
-    check_failure(folder.run("lyrrun --tune tool=5 --simulate"), 7,
-                  "must cool down below its target");
-    check_failure(folder.run("lyrrun --tune bed=60 --printer p.toml"), 7,
-                  "heater.tool.sensor.file");
-    check_failure(folder.run("echo 10 no_power bed | lyrrun --tune bed=60 --simulate --faults -"),
-                  7, "heater bed");
+    check_lyrrun_failure(folder.run("lyrrun --tune tool=5 --simulate"), 7,
+                         "must cool down below its target");
+    check_lyrrun_failure(folder.run("lyrrun --tune bed=60 --printer p.toml"), 7,
+                         "heater.tool.sensor.file");
+    check_lyrrun_failure(
+        folder.run("echo 10 no_power bed | lyrrun --tune bed=60 --simulate --faults -"), 7,
+        "heater bed");
 }
 
 TEST_CASE("lyrrun: a trace never takes the place of the print or of the printer's file") {
@@ -182,14 +187,15 @@ TEST_CASE("lyrrun: a trace never takes the place of the print or of the printer'
     for (const char* trace :
          {"a.lyr", "./a.lyr", "link.lyr", "p.toml", "link.toml", "hard.toml", "$PWD/p.toml"}) {
         CAPTURE(trace);
-        check_failure(
+        check_lyrrun_failure(
             folder.run("lyrrun a.lyr --simulate --printer p.toml --trace " + std::string(trace)), 2,
             "the trace would overwrite the print");
     }
-    check_failure(folder.run("lyrrun link.lyr --simulate --printer link.toml --trace hard.toml"), 2,
-                  "the trace would overwrite the printer's file");
-    check_failure(folder.run("lyrrun a.lyr --simulate --trace - >> a.lyr"), 2,
-                  "the trace would overwrite the print: standard output");
+    check_lyrrun_failure(
+        folder.run("lyrrun link.lyr --simulate --printer link.toml --trace hard.toml"), 2,
+        "the trace would overwrite the printer's file");
+    check_lyrrun_failure(folder.run("lyrrun a.lyr --simulate --trace - >> a.lyr"), 2,
+                         "the trace would overwrite the print: standard output");
     CHECK(text_of(folder / "a.lyr") == lyr);
     CHECK(text_of(folder / "p.toml") == printer);
     CHECK(folder.files().size() == 5);
@@ -214,14 +220,15 @@ TEST_CASE("lyrrun: - is standard output for the trace and standard input for the
         CHECK(streams.err == named.out);
     }
     folder.write("bad.toml", "[axis.q]\n");
-    check_failure(folder.run("lyrrun a.lyr --simulate --printer - < bad.toml"), 3,
-                  "standard input:1");
+    check_lyrrun_failure(folder.run("lyrrun a.lyr --simulate --printer - < bad.toml"), 3,
+                         "standard input:1");
 }
 
 TEST_CASE("lyrrun: output that cannot be written is status 6 and says why") {
     const std::string file = write_print("full", {draw_square, draw_arcs, draw_hatch});
-    check_failure(lyrrun(file + " --simulate --no-heat --trace /dev/full"), 6,
-                  "No space left on device");
-    check_failure(lyrrun(file + " --simulate --no-heat >/dev/full"), 6, "No space left on device");
-    check_failure(lyrrun(file + " --simulate --no-heat >&-"), 6, "standard output");
+    check_lyrrun_failure(lyrrun(file + " --simulate --no-heat --trace /dev/full"), 6,
+                         "No space left on device");
+    check_lyrrun_failure(lyrrun(file + " --simulate --no-heat >/dev/full"), 6,
+                         "No space left on device");
+    check_lyrrun_failure(lyrrun(file + " --simulate --no-heat >&-"), 6, "standard output");
 }

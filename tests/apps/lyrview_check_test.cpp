@@ -1,7 +1,6 @@
 // lyrview --verify, --repair and --diff as users run them.
 
-#include "apps/program.h"
-#include "target/run/print_files.h"
+#include "apps/with_print.h"
 
 using namespace lyr;
 using namespace lyr::tests;
@@ -10,8 +9,7 @@ namespace {
 
 // A whole print a.lyr of three layers, and b.lyr with a wrong byte in the second one.
 Folder with_prints(const std::string& name) {
-    Folder folder(name);
-    fs::copy_file(write_print(name, {draw_square, draw_arcs, draw_hatch}), folder / "a.lyr");
+    Folder folder = with_print(name);
     std::string damaged = text_of(folder / "a.lyr");
     std::size_t at = 16;
     for (int block = 0, layers = 0; layers < 2; ++block) {
@@ -24,10 +22,6 @@ Folder with_prints(const std::string& name) {
     damaged[at + 10] = static_cast<char>(damaged[at + 10] ^ 1);
     folder.write("b.lyr", damaged);
     return folder;
-}
-
-void check_failure(const Ended& ended, int status, const std::string& part) {
-    check_failure(ended, "lyrview", status, part);
 }
 
 }  // namespace
@@ -57,17 +51,17 @@ TEST_CASE("lyrview --verify: a whole print, a damaged one, one that is cut, and 
 
     folder.write("c.lyr", "solid ascii\n");
     CHECK(folder.run("lyrview --verify c.lyr").status == 3);
-    check_failure(folder.run("lyrview --verify missing.lyr"), 3, "missing.lyr");
+    check_lyrview_failure(folder.run("lyrview --verify missing.lyr"), 3, "missing.lyr");
 }
 
 TEST_CASE("lyrview: a file whose name says png, G-code or the like is not given something else") {
     const Folder folder = with_prints("lyrview-endings");
     const auto before = folder.files();
     for (const char* name : {"a.png", "a.svg.gz", "a.pdf"})
-        check_failure(folder.run("lyrview a.lyr --layer 1 -o " + std::string(name)), 2,
-                      "--to FORMAT");
-    check_failure(folder.run("lyrview b.lyr --repair -o b.gcode"), 2, "say -o FILE.lyr");
-    check_failure(folder.run("lyrview a.lyr --thumbnail -o a.SVG"), 2, "say -o FILE.png");
+        check_lyrview_failure(folder.run("lyrview a.lyr --layer 1 -o " + std::string(name)), 2,
+                              "--to FORMAT");
+    check_lyrview_failure(folder.run("lyrview b.lyr --repair -o b.gcode"), 2, "say -o FILE.lyr");
+    check_lyrview_failure(folder.run("lyrview a.lyr --thumbnail -o a.SVG"), 2, "say -o FILE.png");
     CHECK(folder.files() == before);
     CHECK(folder.run("lyrview a.lyr --layer 1 --to svg -o a.svgz.part").status == 0);
     CHECK(folder.run("lyrview a.lyr --layer 1 -o picture").status == 0);
@@ -103,11 +97,12 @@ TEST_CASE("lyrview --repair: the layers in front of the damage, said and whole")
     CHECK(same.status == 0);
     CHECK(same.err.find("nothing is to be repaired") != std::string::npos);
 
-    check_failure(folder.run("lyrview --repair b.lyr"), 2, "-o FILE");
-    check_failure(folder.run("lyrview --repair b.lyr -o b.lyr"), 2, "would overwrite");
-    check_failure(folder.run("lyrview --repair b.lyr -o missing/c.lyr"), 6, "missing/c.lyr");
-    check_failure(folder.run("head -c 100 a.lyr | lyrview --repair - -o d.lyr"), 3,
-                  "nothing to keep");
+    check_lyrview_failure(folder.run("lyrview --repair b.lyr"), 2, "-o FILE");
+    check_lyrview_failure(folder.run("lyrview --repair b.lyr -o b.lyr"), 2, "would overwrite");
+    check_lyrview_failure(folder.run("lyrview --repair b.lyr -o missing/c.lyr"), 6,
+                          "missing/c.lyr");
+    check_lyrview_failure(folder.run("head -c 100 a.lyr | lyrview --repair - -o d.lyr"), 3,
+                          "nothing to keep");
     CHECK_FALSE(fs::exists(folder / "d.lyr"));
 }
 
@@ -127,9 +122,10 @@ TEST_CASE("lyrview: an endless input that is no print, or no G-code, is refused"
     for (const char* what : {"--verify", "--repair -o x.lyr", "-o x.html", "--info"})
         for (const char* command : {"lyrview /dev/zero ", "cat /dev/zero | lyrview - "}) {
             CAPTURE(what);
-            check_failure(folder.run(command + std::string(what)), 3, "this is not a .lyr file");
+            check_lyrview_failure(folder.run(command + std::string(what)), 3,
+                                  "this is not a .lyr file");
         }
-    check_failure(folder.run("lyrview --from-gcode /dev/zero -o x.lyr"), 3, "longer than ");
+    check_lyrview_failure(folder.run("lyrview --from-gcode /dev/zero -o x.lyr"), 3, "longer than ");
     CHECK(folder.files().empty());
 }
 
@@ -138,7 +134,7 @@ TEST_CASE("lyrview --verify: a print whose first byte is damaged is still one") 
     std::string damaged = text_of(folder / "a.lyr");
     damaged[0] = 'l';
     folder.write("c.lyr", damaged);
-    check_failure(folder.run("lyrview --verify c.lyr > out"), 3, "the prologue is damaged");
+    check_lyrview_failure(folder.run("lyrview --verify c.lyr > out"), 3, "the prologue is damaged");
 }
 
 TEST_CASE("lyrview --diff: 0 for the same, 9 for others, 3 for what cannot be read") {
@@ -153,19 +149,19 @@ TEST_CASE("lyrview --diff: 0 for the same, 9 for others, 3 for what cannot be re
     CHECK(differ.out.starts_with("a.lyr  ->  c.lyr\n3 layers, 1 layer; 1 the same\n"));
     CHECK(differ.out.find("): only in the first\n") != std::string::npos);
     CHECK(differ.err.starts_with("lyrview: note: the prints differ: 2 layers, "));
-    check_failure(folder.run("lyrview --diff a.lyr b.lyr"), 3, "b.lyr");
-    check_failure(folder.run("lyrview --diff b.lyr a.lyr"), 3, "b.lyr");
-    check_failure(folder.run("lyrview --diff a.lyr - < a.lyr"), 2, "twice");
-    check_failure(folder.run("lyrview --diff a.lyr"), 2, "print");
-    check_failure(folder.run("lyrview --diff a.lyr a.lyr --verify"), 2, "stand alone");
-    check_failure(folder.run("lyrview a.lyr --verify --layer 1"), 2, "stand alone");
-    check_failure(folder.run("lyrview a.lyr --verify -o x"), 2, "-o goes with --repair");
+    check_lyrview_failure(folder.run("lyrview --diff a.lyr b.lyr"), 3, "b.lyr");
+    check_lyrview_failure(folder.run("lyrview --diff b.lyr a.lyr"), 3, "b.lyr");
+    check_lyrview_failure(folder.run("lyrview --diff a.lyr - < a.lyr"), 2, "twice");
+    check_lyrview_failure(folder.run("lyrview --diff a.lyr"), 2, "print");
+    check_lyrview_failure(folder.run("lyrview --diff a.lyr a.lyr --verify"), 2, "stand alone");
+    check_lyrview_failure(folder.run("lyrview a.lyr --verify --layer 1"), 2, "stand alone");
+    check_lyrview_failure(folder.run("lyrview a.lyr --verify -o x"), 2, "-o goes with --repair");
 }
 
 TEST_CASE("lyrview --thumbnail: a print without one is said so") {
     const Folder folder = with_prints("lyrview-thumbnail");
-    check_failure(folder.run("lyrview --thumbnail a.lyr -o a.png"), 3, "no thumbnail");
-    check_failure(folder.run("lyrview --thumbnail a.lyr -o a.lyr"), 2, "would overwrite");
-    check_failure(folder.run("lyrview --thumbnail a.lyr --verify"), 2, "stand alone");
+    check_lyrview_failure(folder.run("lyrview --thumbnail a.lyr -o a.png"), 3, "no thumbnail");
+    check_lyrview_failure(folder.run("lyrview --thumbnail a.lyr -o a.lyr"), 2, "would overwrite");
+    check_lyrview_failure(folder.run("lyrview --thumbnail a.lyr --verify"), 2, "stand alone");
     CHECK_FALSE(fs::exists(folder / "a.png"));
 }

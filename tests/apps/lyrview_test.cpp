@@ -1,25 +1,9 @@
 // The program itself: what it prints where, and its exit status. docs/exit-status.md is its contract.
 
-#include "apps/program.h"
-#include "target/run/print_files.h"
+#include "apps/with_print.h"
 
 using namespace lyr;
 using namespace lyr::tests;
-
-namespace {
-
-// A folder with a print of three layers, a.lyr.
-Folder with_print(const std::string& name) {
-    Folder folder(name);
-    fs::copy_file(write_print(name, {draw_square, draw_arcs, draw_hatch}), folder / "a.lyr");
-    return folder;
-}
-
-void check_failure(const Ended& ended, int status, const std::string& part) {
-    check_failure(ended, "lyrview", status, part);
-}
-
-}  // namespace
 
 TEST_CASE("lyrview: the picture is the same in a file, on standard output and by either name") {
     const Folder folder = with_print("lyrview-picture");
@@ -65,13 +49,14 @@ TEST_CASE("lyrview: a page of a print that is not whole is refused, and none is 
     const Folder folder = with_print("lyrview-page-cut");
     const std::string whole = text_of(folder / "a.lyr");
     folder.write("cut.lyr", whole.substr(0, whole.size() - 40));
-    check_failure(folder.run("lyrview cut.lyr -o x.html"), 3, "cut.lyr");
-    check_failure(folder.run("lyrview missing.lyr -o x.html"), 3, "missing.lyr");
-    check_failure(folder.run("lyrview a.lyr -o missing/x.html"), 6, "missing/x.html");
-    check_failure(folder.run("lyrview a.lyr --no-travel -o x.html"), 2, "--no-travel needs");
+    check_lyrview_failure(folder.run("lyrview cut.lyr -o x.html"), 3, "cut.lyr");
+    check_lyrview_failure(folder.run("lyrview missing.lyr -o x.html"), 3, "missing.lyr");
+    check_lyrview_failure(folder.run("lyrview a.lyr -o missing/x.html"), 6, "missing/x.html");
+    check_lyrview_failure(folder.run("lyrview a.lyr --no-travel -o x.html"), 2,
+                          "--no-travel needs");
     fs::create_symlink("a.lyr", folder / "link.html");
-    check_failure(folder.run("lyrview a.lyr -o link.html"), 2,
-                  "the page would overwrite the print");
+    check_lyrview_failure(folder.run("lyrview a.lyr -o link.html"), 2,
+                          "the page would overwrite the print");
     CHECK(text_of(folder / "a.lyr") == whole);
     CHECK_FALSE(fs::exists(folder / "x.html"));
 }
@@ -88,19 +73,20 @@ TEST_CASE("lyrview: --info sums up and names the file, or standard input") {
 
 TEST_CASE("lyrview: what is wrong comes as one line and with its status") {
     const Folder folder = with_print("lyrview-wrong");
-    check_failure(folder.run("lyrview"), 2, "print");
-    check_failure(folder.run("lyrview a.lyr"), 2, "--info, --layer N");
-    check_failure(folder.run("lyrview a.lyr --info --layer 1"), 2, "--info or --layer");
-    check_failure(folder.run("lyrview a.lyr --info -o x"), 2, "--layer");
-    check_failure(folder.run("lyrview a.lyr --info -o -"), 2, "--layer");
-    check_failure(folder.run("lyrview '' --info"), 2, "print: expected the name of a file");
-    check_failure(folder.run("lyrview a.lyr --layer 1 -o ''"), 2, "expected the name of a file");
-    check_failure(folder.run("lyrview a.lyr --layer 4"), 3, "3 layers");
-    check_failure(folder.run("lyrview missing.lyr --info"), 3, "missing.lyr");
+    check_lyrview_failure(folder.run("lyrview"), 2, "print");
+    check_lyrview_failure(folder.run("lyrview a.lyr"), 2, "--info, --layer N");
+    check_lyrview_failure(folder.run("lyrview a.lyr --info --layer 1"), 2, "--info or --layer");
+    check_lyrview_failure(folder.run("lyrview a.lyr --info -o x"), 2, "--layer");
+    check_lyrview_failure(folder.run("lyrview a.lyr --info -o -"), 2, "--layer");
+    check_lyrview_failure(folder.run("lyrview '' --info"), 2, "print: expected the name of a file");
+    check_lyrview_failure(folder.run("lyrview a.lyr --layer 1 -o ''"), 2,
+                          "expected the name of a file");
+    check_lyrview_failure(folder.run("lyrview a.lyr --layer 4"), 3, "3 layers");
+    check_lyrview_failure(folder.run("lyrview missing.lyr --info"), 3, "missing.lyr");
     for (const char* layer : {"0", "-1", "nan", "inf", "1e1", "1.5", "99999999999", "''", "x"}) {
         CAPTURE(layer);
-        check_failure(folder.run("lyrview a.lyr --layer " + std::string(layer)), 2,
-                      "--layer: expected a whole number from 1");
+        check_lyrview_failure(folder.run("lyrview a.lyr --layer " + std::string(layer)), 2,
+                              "--layer: expected a whole number from 1");
     }
     CHECK(folder.files() == std::set<std::string>{"a.lyr"});
 }
@@ -110,9 +96,9 @@ TEST_CASE("lyrview: the picture never takes the place of the print") {
     const std::string before = text_of(folder / "a.lyr");
     fs::create_symlink("a.lyr", folder / "link");
     for (const char* output : {"a.lyr", "link", "$PWD/./a.lyr"})
-        check_failure(folder.run("lyrview a.lyr --layer 1 -o " + std::string(output)), 2,
-                      "the picture would overwrite the print");
-    check_failure(folder.run("lyrview a.lyr --layer 1 >> a.lyr"), 2, "standard output");
+        check_lyrview_failure(folder.run("lyrview a.lyr --layer 1 -o " + std::string(output)), 2,
+                              "the picture would overwrite the print");
+    check_lyrview_failure(folder.run("lyrview a.lyr --layer 1 >> a.lyr"), 2, "standard output");
     CHECK(text_of(folder / "a.lyr") == before);
 }
 
@@ -132,9 +118,9 @@ TEST_CASE(
         }
     }
     for (const char* layer : {"3", "4"})
-        check_failure(folder.run("lyrview cut.lyr -o x.svg --layer " + std::string(layer)), 3,
-                      "the last whole layer is 3");
-    check_failure(folder.run("lyrview cut.lyr --info"), 3, "the last whole layer is 3");
+        check_lyrview_failure(folder.run("lyrview cut.lyr -o x.svg --layer " + std::string(layer)),
+                              3, "the last whole layer is 3");
+    check_lyrview_failure(folder.run("lyrview cut.lyr --info"), 3, "the last whole layer is 3");
     CHECK_FALSE(fs::exists(folder / "x.svg"));
 }
 
@@ -148,11 +134,15 @@ TEST_CASE("lyrview: a link as output stays, also one to a file that is not there
 
 TEST_CASE("lyrview: output that cannot be written is status 6 and says why") {
     const Folder folder = with_print("lyrview-full");
-    check_failure(folder.run("lyrview a.lyr --layer 3 -o /dev/full"), 6, "No space left on device");
-    check_failure(folder.run("lyrview a.lyr --layer 3 >/dev/full"), 6, "No space left on device");
-    check_failure(folder.run("lyrview a.lyr --info >/dev/full"), 6, "No space left on device");
-    check_failure(folder.run("lyrview a.lyr --info >&-"), 6, "standard output");
-    check_failure(folder.run("lyrview a.lyr --layer 3 -o missing/x.svg"), 6, "missing/x.svg");
+    check_lyrview_failure(folder.run("lyrview a.lyr --layer 3 -o /dev/full"), 6,
+                          "No space left on device");
+    check_lyrview_failure(folder.run("lyrview a.lyr --layer 3 >/dev/full"), 6,
+                          "No space left on device");
+    check_lyrview_failure(folder.run("lyrview a.lyr --info >/dev/full"), 6,
+                          "No space left on device");
+    check_lyrview_failure(folder.run("lyrview a.lyr --info >&-"), 6, "standard output");
+    check_lyrview_failure(folder.run("lyrview a.lyr --layer 3 -o missing/x.svg"), 6,
+                          "missing/x.svg");
 }
 
 TEST_CASE("lyrview: a signal ends it with status 8 while it waits for its input") {

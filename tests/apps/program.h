@@ -90,6 +90,21 @@ inline void check_failure(const Ended& ended, const std::string& program, int st
     for (const char c : ended.err) CHECK((c == '\n' || static_cast<unsigned char>(c) >= 0x20));
 }
 
+inline void check_lyrrun_failure(const Ended& ended, int status, const std::string& part) {
+    check_failure(ended, "lyrrun", status, part);
+}
+
+inline void check_lyrview_failure(const Ended& ended, int status, const std::string& part) {
+    check_failure(ended, "lyrview", status, part);
+}
+
+// The number that follows the first of these words.
+inline double number_after(const std::string& text, const std::string& words) {
+    const std::size_t at = text.find(words);
+    REQUIRE_MESSAGE(at != std::string::npos, text);
+    return std::stod(text.substr(at + words.size()));
+}
+
 // A program that is on its way while the test goes on.
 class Running {
 public:

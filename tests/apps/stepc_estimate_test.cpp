@@ -16,12 +16,6 @@ constexpr double share_off = 0.01;
 // The summary's last digit.
 constexpr double rounded_to_mm = 1;
 
-double number_after(const std::string& text, const std::string& key) {
-    const std::size_t at = text.find(key);
-    REQUIRE(at != text.npos);
-    return std::stod(text.substr(at + key.size()));
-}
-
 struct StatedTimes {
     double print_s = 0, layers_s = 0;
     std::uint32_t layers = 0, without = 0;

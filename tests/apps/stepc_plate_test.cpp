@@ -12,12 +12,6 @@ using namespace lyr::tests;
 
 namespace {
 
-double number_after(const std::string& text, const std::string& name) {
-    const std::size_t at = text.find(name);
-    REQUIRE_MESSAGE(at != std::string::npos, text);
-    return std::stod(text.substr(at + name.size()));
-}
-
 // "time 1 h 02 min 03 s"
 double stated_time_s(const std::string& text) {
     static const std::regex time(R"(time (\d+) h (\d+) min (\d+) s)");

@@ -12,7 +12,7 @@ using namespace lyr::tests;
 namespace {
 
 // A folder with a cuboid of 50.8 x 25.4 x 76.2 mm, p.step, and a file of one height, z.
-Folder with_part(const std::string& name) {
+Folder with_cuboid(const std::string& name) {
     Folder folder(name);
     folder.copy("parts/cuboid.step", "p.step");
     folder.write("z", "25.4\n");
@@ -32,14 +32,14 @@ bool has_one_of_many(const std::string& text) {
 
 const std::set<std::string> untouched{"p.step", "z"};
 
-void check_failure(const Ended& ended, int status, const std::string& part) {
+void check_stepc_failure(const Ended& ended, int status, const std::string& part) {
     check_failure(ended, "stepc", status, part);
 }
 
 }  // namespace
 
 TEST_CASE("stepc: the summary counts one thing as one, and many as many") {
-    const Folder folder = with_part("stepc-summary");
+    const Folder folder = with_cuboid("stepc-summary");
     const Ended sections = folder.run("stepc p.step --section-at z --report r");
     CHECK(sections.status == 0);
     CHECK(sections.err.empty());
@@ -54,7 +54,7 @@ TEST_CASE("stepc: the summary counts one thing as one, and many as many") {
 }
 
 TEST_CASE("stepc: heights are reported as they were given") {
-    const Folder folder = with_part("stepc-heights");
+    const Folder folder = with_cuboid("stepc-heights");
     folder.write("z", "25.4\n0.1\n1e-3\n");
     CHECK(folder.run("stepc p.step --section-at z --report r").status == 0);
     const std::string report = text_of(folder / "r");
@@ -63,23 +63,24 @@ TEST_CASE("stepc: heights are reported as they were given") {
 }
 
 TEST_CASE("stepc: what is wrong with a heights file is said without its control bytes") {
-    const Folder folder = with_part("stepc-control-bytes");
+    const Folder folder = with_cuboid("stepc-control-bytes");
     folder.write("bad", "1\n\x1b[2J\x07\xff\n");
-    check_failure(folder.run("stepc p.step --section-at bad --report r"), 3,
-                  "bad:2: error: expected a height in mm, found \"\\x1b[2J\\x07\\xff\"");
-    check_failure(folder.run("stepc p.step --section-at /dev/zero --report r"), 3, "/dev/zero");
+    check_stepc_failure(folder.run("stepc p.step --section-at bad --report r"), 3,
+                        "bad:2: error: expected a height in mm, found \"\\x1b[2J\\x07\\xff\"");
+    check_stepc_failure(folder.run("stepc p.step --section-at /dev/zero --report r"), 3,
+                        "/dev/zero");
     CHECK_FALSE(fs::exists(folder / "r"));
 }
 
 TEST_CASE("stepc: no number that is not finite or makes no sense gets through, and none hangs") {
-    const Folder folder = with_part("stepc-numbers");
+    const Folder folder = with_cuboid("stepc-numbers");
     const std::vector<std::string> values{"nan",  "-nan",  "inf", "-inf", "1e400", "1e308",
                                           "1e12", "-1e12", "''",  "0x10", "1inch", "'1 1'"};
     const auto refused = [&](const std::string& option, const std::string& expected) {
         for (const std::string& value : values) {
             CAPTURE(option);
             CAPTURE(value);
-            check_failure(folder.run("stepc p.step " + option + value), 2, expected);
+            check_stepc_failure(folder.run("stepc p.step " + option + value), 2, expected);
         }
     };
     refused("--threads ", "--threads: expected a whole number");
@@ -88,17 +89,17 @@ TEST_CASE("stepc: no number that is not finite or makes no sense gets through, a
     refused("--set speed.travel=", "--set: speed.travel: expected 0.1 to 2000 mm/s, found ");
     for (const char* value :
          {"inf,0,0", "0,nan,1", "0,0,1e400", "1e12,0,0", "0,0", "0,0,1,0", "0,,1", "0,0,1,", "''"})
-        check_failure(folder.run("stepc p.step --up " + std::string(value)), 2,
-                      "--up: expected X,Y,Z, each from -1000 to 1000");
+        check_stepc_failure(folder.run("stepc p.step --up " + std::string(value)), 2,
+                            "--up: expected X,Y,Z, each from -1000 to 1000");
     for (const char* value : {"1e12,0", "0,-10001", "nan,0", "0,inf", "0", "0,0,0", "''"})
-        check_failure(folder.run("stepc p.step --at " + std::string(value)), 2,
-                      "--at: plate.at: expected X,Y, each -10000 to 10000 mm");
-    check_failure(folder.run("stepc p.step --up 0,0,0"), 2, "no direction");
+        check_stepc_failure(folder.run("stepc p.step --at " + std::string(value)), 2,
+                            "--at: plate.at: expected X,Y, each -10000 to 10000 mm");
+    check_stepc_failure(folder.run("stepc p.step --up 0,0,0"), 2, "no direction");
     CHECK(folder.files() == untouched);
 }
 
 TEST_CASE("stepc: the length of --up does not matter") {
-    const Folder folder = with_part("stepc-up");
+    const Folder folder = with_cuboid("stepc-up");
     CHECK(folder.run("stepc p.step --up -1,0,0 -o a.lyr").status == 0);
     for (const char* up : {"-1000,0,0", "-1e-300,0,0", "-5e-324,0,0"}) {
         CHECK(folder.run("stepc p.step -o b.lyr --up " + std::string(up)).status == 0);
@@ -107,7 +108,7 @@ TEST_CASE("stepc: the length of --up does not matter") {
 }
 
 TEST_CASE("stepc: a part in the wrong unit is refused with its size, and so is a damaged point") {
-    const Folder folder = with_part("stepc-unit");
+    const Folder folder = with_cuboid("stepc-unit");
     const std::string part = text_of(folder / "p.step");
     const auto with = [&](const std::string& old, const std::string& by) {
         std::string changed = part;
@@ -116,9 +117,9 @@ TEST_CASE("stepc: a part in the wrong unit is refused with its size, and so is a
         folder.write("q.step", changed.replace(at, old.size(), by));
     };
     with("SI_UNIT($,.METRE.)", "SI_UNIT(.KILO.,.METRE.)");
-    check_failure(folder.run("stepc q.step"), 5, "is the file's length unit wrong?");
+    check_stepc_failure(folder.run("stepc q.step"), 5, "is the file's length unit wrong?");
     with("SI_UNIT($,.METRE.)", "SI_UNIT(.EXA.,.METRE.)");
-    check_failure(folder.run("stepc q.step"), 5, "more than 1 km from the origin");
+    check_stepc_failure(folder.run("stepc q.step"), 5, "more than 1 km from the origin");
     CHECK(folder.files() == std::set<std::string>{"p.step", "q.step", "z"});
 }
 
@@ -185,31 +186,34 @@ TEST_CASE("stepc: errors are shown before warnings, and as many as can be read")
 }
 
 TEST_CASE("stepc: an empty name is no file") {
-    const Folder folder = with_part("stepc-empty");
-    check_failure(folder.run("stepc ''"), 2, "part: expected the name of a file");
+    const Folder folder = with_cuboid("stepc-empty");
+    check_stepc_failure(folder.run("stepc ''"), 2, "part: expected the name of a file");
     for (const char* option : {"-o", "--output", "--report", "--section-at"}) {
         CAPTURE(option);
-        check_failure(folder.run("stepc p.step " + std::string(option) + " ''"), 2, "expected");
-        check_failure(folder.run("stepc p.step " + std::string(option)), 2, "expected");
+        check_stepc_failure(folder.run("stepc p.step " + std::string(option) + " ''"), 2,
+                            "expected");
+        check_stepc_failure(folder.run("stepc p.step " + std::string(option)), 2, "expected");
     }
-    check_failure(folder.run("stepc p.step --output="), 2, "--output: expected");
+    check_stepc_failure(folder.run("stepc p.step --output="), 2, "--output: expected");
     CHECK(folder.files() == untouched);
 }
 
 TEST_CASE("stepc: options that make no sense are told in this program's words") {
-    const Folder folder = with_part("stepc-options");
-    check_failure(folder.run("stepc"), 2, "part is required");
-    check_failure(folder.run("stepc p.step --colour"), 2, "unknown option \"--colour\"");
-    check_failure(folder.run("stepc p.step b c"), 2, "unexpected argument \"b\"");
-    check_failure(folder.run("stepc p.step -o a -o b"), 2, "--output: expected one value, once");
-    check_failure(folder.run("stepc p.step --allow-open=no"), 2, "--allow-open: takes no value");
-    check_failure(folder.run("stepc p.step --section-at z"), 2, "--report");
-    check_failure(folder.run("stepc p.step --section-at z --report r -o a.lyr"), 2, "-o");
+    const Folder folder = with_cuboid("stepc-options");
+    check_stepc_failure(folder.run("stepc"), 2, "part is required");
+    check_stepc_failure(folder.run("stepc p.step --colour"), 2, "unknown option \"--colour\"");
+    check_stepc_failure(folder.run("stepc p.step b c"), 2, "unexpected argument \"b\"");
+    check_stepc_failure(folder.run("stepc p.step -o a -o b"), 2,
+                        "--output: expected one value, once");
+    check_stepc_failure(folder.run("stepc p.step --allow-open=no"), 2,
+                        "--allow-open: takes no value");
+    check_stepc_failure(folder.run("stepc p.step --section-at z"), 2, "--report");
+    check_stepc_failure(folder.run("stepc p.step --section-at z --report r -o a.lyr"), 2, "-o");
     CHECK(folder.files() == untouched);
 }
 
 TEST_CASE("stepc: no output takes the place of an input or of another output") {
-    const Folder folder = with_part("stepc-files");
+    const Folder folder = with_cuboid("stepc-files");
     const std::string part = text_of(folder / "p.step"), heights = text_of(folder / "z");
     fs::create_symlink("z", folder / "z-link");
     fs::create_symlink("a.lyr", folder / "a-link");  // to what is not there yet
@@ -217,7 +221,7 @@ TEST_CASE("stepc: no output takes the place of an input or of another output") {
     const auto files = folder.files();
     const auto refused = [&](const std::string& arguments, const std::string& message) {
         CAPTURE(arguments);
-        check_failure(folder.run("stepc " + arguments), 2, message);
+        check_stepc_failure(folder.run("stepc " + arguments), 2, message);
         CHECK(folder.files() == files);
     };
     for (const char* report : {"z", "./z", "z-link", "$PWD/z", "../stepc-files/z"})
@@ -242,7 +246,7 @@ TEST_CASE("stepc: no output takes the place of an input or of another output") {
 }
 
 TEST_CASE("stepc: a signal ends it with status 8, and neither output is there in part") {
-    const Folder folder = with_part("stepc-signal");
+    const Folder folder = with_cuboid("stepc-signal");
     folder.make_pipe("pipe");
     folder.write("a.lyr", "old");
     const auto files = folder.files();
@@ -259,7 +263,7 @@ TEST_CASE("stepc: a signal ends it with status 8, and neither output is there in
 }
 
 TEST_CASE("stepc: a signal that was ignored from the beginning stays so") {
-    const Folder folder = with_part("stepc-nohup");
+    const Folder folder = with_cuboid("stepc-nohup");
     folder.make_pipe("pipe");
     const Ended ended = folder.run(
         "trap '' HUP\n"
@@ -275,7 +279,7 @@ TEST_CASE("stepc: a signal that was ignored from the beginning stays so") {
 }
 
 TEST_CASE("stepc: the print states the SHA-256 of the model's file, and has two pictures") {
-    const Folder folder = with_part("stepc-source");
+    const Folder folder = with_cuboid("stepc-source");
     const Ended sum = folder.run("sha256sum < p.step");
     REQUIRE(sum.out.size() > 64);
     for (const char* script : {"stepc p.step -o p.lyr --layer-height 0.4 --threads 1",
