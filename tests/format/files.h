@@ -26,6 +26,9 @@ namespace lyr::format::test {
 
 using FileBytes = std::vector<std::byte>;
 
+inline constexpr Quantum quantum{1000};
+inline constexpr PathStyle wall_style{.role = Role::outer_wall, .width_mm = 0.45, .height_mm = 0.2};
+
 // A path in the build folder for one test's file.
 inline std::string scratch(const std::string& name) {
     return std::string(LYR_BUILD) + "/" + name + ".lyr";

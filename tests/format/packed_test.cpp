@@ -15,11 +15,10 @@
 using namespace lyr;
 using namespace lyr::format;
 using test::FileBytes;
+using test::quantum;
+using test::wall_style;
 
 namespace {
-
-constexpr Quantum quantum{1000};
-constexpr PathStyle style{.role = Role::outer_wall, .width_mm = 0.45, .height_mm = 0.2};
 
 struct Motion {
     double x_mm = 0, y_mm = 0, sagitta_mm = 0;
@@ -119,7 +118,7 @@ void check_walls(const std::vector<Wall>& walls, const EncodedLayer& layer) {
 
 double bytes_per_motion(const std::vector<Wall>& walls) {
     LayerEncoder encoder(quantum, {});
-    encoder.begin_path(style);
+    encoder.begin_path(wall_style);
     std::size_t motions = 0;
     for (const Wall& wall : walls) {
         draw(encoder, wall);
@@ -175,7 +174,7 @@ TEST_CASE("packed: runs go on from chunk to chunk") {
     for (int i = 0; i < 150; ++i) walls.push_back(way.wall(0.4 * (i % 3)));
     CHECK(bytes_per_motion(walls) < 1.1);
     LayerEncoder encoder(quantum, {});
-    encoder.begin_path(style);
+    encoder.begin_path(wall_style);
     for (const Wall& wall : walls) draw(encoder, wall);
     const auto layer = encoder.finish();
     REQUIRE(layer.ok());
@@ -237,7 +236,7 @@ TEST_CASE("packed: a layer starts without a history") {
     std::vector<EncodedLayer> layers;
     for (const double inset_mm : {0.8, 0.4}) {
         LayerEncoder encoder(quantum, {});
-        encoder.begin_path(style);
+        encoder.begin_path(wall_style);
         draw(encoder, way.wall(inset_mm));
         layers.push_back(*encoder.finish());
     }

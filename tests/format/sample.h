@@ -17,6 +17,8 @@
 
 namespace lyr::format::test {
 
+inline constexpr PathStyle timed_wall_style{Role::outer_wall, 0.45, 0.2, 1, 60, 0};
+
 // A motion before rounding; `kind` is the operation's index in the variant.
 struct Expected {
     std::size_t kind = 0;

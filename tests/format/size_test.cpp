@@ -10,15 +10,14 @@
 
 using namespace lyr;
 using namespace lyr::format;
+using test::quantum;
+using test::timed_wall_style;
 
 namespace {
 
-constexpr Quantum quantum{1000};
-constexpr PathStyle style{Role::outer_wall, 0.45, 0.2, 1, 60, 0};
-
 LayerEncoder pen() {
     LayerEncoder layer(quantum, {});
-    layer.begin_path(style);
+    layer.begin_path(timed_wall_style);
     return layer;
 }
 
@@ -91,12 +90,12 @@ TEST_CASE("size: bytes for a line, an arc, a circle, a hatch interval, a path") 
     bound("a hatch interval of sparse infill, with its travel", sparse, intervals, 5);
 
     LayerEncoder paths = pen();
-    PathStyle inner = style;
+    PathStyle inner = timed_wall_style;
     inner.role = Role::inner_wall;
     inner.speed_mm_s = 90;
     for (int i = 0; i < 500; ++i) {
         paths.begin_path(inner);
-        paths.begin_path(style);
+        paths.begin_path(timed_wall_style);
     }
     bound("a path of another role and speed", paths, 1000, 5.1);
 

@@ -11,11 +11,10 @@
 using namespace lyr;
 using namespace lyr::format;
 using test::FileBytes;
+using test::quantum;
+using test::wall_style;
 
 namespace {
-
-constexpr Quantum quantum{1000};
-constexpr PathStyle style{.role = Role::outer_wall, .width_mm = 0.45, .height_mm = 0.2};
 
 using Draw = std::function<void(LayerEncoder&)>;
 
@@ -23,7 +22,7 @@ Result<EncodedLayer> layer_of(const Draw& draw) {
     LayerState state;
     state.retract_length_mm = 0.8;
     LayerEncoder encoder(quantum, state);
-    encoder.begin_path(style);
+    encoder.begin_path(wall_style);
     draw(encoder);
     return encoder.finish();
 }

@@ -14,11 +14,10 @@
 
 using namespace lyr;
 using namespace lyr::format;
+using test::quantum;
+using test::timed_wall_style;
 
 namespace {
-
-constexpr Quantum quantum{1000};
-constexpr PathStyle style{Role::outer_wall, 0.45, 0.2, 1, 60, 0};
 
 EncodedLayer random_layer(std::uint32_t seed, int calls) {
     test::RandomLayer layer(seed, 0.2 * (seed + 1), quantum, calls);
@@ -45,7 +44,7 @@ std::string folder(const std::string& name) {
 template <class Call>
 std::string mistake(Call call) {
     LayerEncoder layer(quantum, {});
-    layer.begin_path(style);
+    layer.begin_path(timed_wall_style);
     call(layer);
     layer.line_to(1, 1);
     const auto encoded = layer.finish();
@@ -78,7 +77,7 @@ TEST_CASE("writer 2: the bytes do not depend on threads") {
 
 TEST_CASE("writer 3: what rounds to no motion is left out, flat arcs are lines") {
     LayerEncoder layer(quantum, {});
-    layer.begin_path(style);
+    layer.begin_path(timed_wall_style);
     layer.line_to(0.0004, -0.0004);
     layer.travel_to(0.0004, 0);
     layer.arc_to(0.0003, 0.0003, 0.0002);
@@ -152,7 +151,7 @@ TEST_CASE("writer 1: arcs of the widest kind and their rounding stay what they a
     // Tiny to huge, in all directions; the sagitta of a turn by 3/2 pi exactly.
     for (const double radius : {0.002, 0.01, 0.3, 5.0, 400.0}) {
         LayerEncoder layer(quantum, {});
-        layer.begin_path(style);
+        layer.begin_path(timed_wall_style);
         for (int i = 0; i < 360; ++i) {
             const double from = i * std::numbers::pi / 180, to = from + 1.5 * std::numbers::pi;
             layer.travel_to(radius * std::cos(from), radius * std::sin(from));
@@ -228,7 +227,7 @@ TEST_CASE("writer 6: a print that does not fit the memory set aside is the same"
     // 30 layers of 1.5 MiB: the first ones go by the temporary file.
     const EncodedLayer layer = [] {
         LayerEncoder encoder(quantum, test::RandomLayer::state(0.2));
-        encoder.begin_path(style);
+        encoder.begin_path(timed_wall_style);
         for (int i = 0; i < 300000; ++i) encoder.travel_to(i % 2 ? 90 : -90, i % 3 ? 80 : -80.0);
         auto encoded = encoder.finish();
         REQUIRE(encoded.ok());

@@ -18,7 +18,7 @@ using std::numbers::pi;
 namespace {
 
 // Of coordinates up to a few hundred millimetres, after some ten operations.
-constexpr double round_off_mm = 1e-12 * 200;
+constexpr double construction_round_off_mm = 1e-12 * 200;
 
 double extent_mm(const BSplineCurve& c) {
     double largest = 1;
@@ -70,8 +70,9 @@ TEST_CASE("5: a circle has nine control points and is a circle") {
         CHECK(c.closed);
         for (double t = from; t < from + 2 * pi; t += 0.1) {
             const Point3 local = circle.frame.to_local(evaluate(c, t));
-            CHECK(std::abs(local.z()) <= round_off_mm);
-            CHECK(std::abs(std::hypot(local.x(), local.y()) - circle.radius_mm) <= round_off_mm);
+            CHECK(std::abs(local.z()) <= construction_round_off_mm);
+            CHECK(std::abs(std::hypot(local.x(), local.y()) - circle.radius_mm) <=
+                  construction_round_off_mm);
         }
     }
 }
@@ -85,7 +86,7 @@ TEST_CASE("5: a piece of a closed B-spline may cross its seam") {
         const BSplineCurve c = rational(whole, from, to);
         for (int k = 0; k <= 10; ++k) {
             const double t = c.domain_start() + k / 10.0 * (c.domain_end() - c.domain_start());
-            CHECK((evaluate(c, t) - evaluate(whole, t)).norm() <= round_off_mm);
+            CHECK((evaluate(c, t) - evaluate(whole, t)).norm() <= construction_round_off_mm);
         }
     }
 }
@@ -99,7 +100,8 @@ TEST_CASE("5: an extrusion is its curve, moved") {
         CHECK(s.closed_u == c.closed);
         for (int k = 0; k < 5; ++k) {
             const double u = random.between(s.start_u(), s.end_u()), v = random.between(0, 1);
-            CHECK((evaluate(s, {u, v}) - evaluate(c, u) - v * sweep).norm() <= round_off_mm);
+            CHECK((evaluate(s, {u, v}) - evaluate(c, u) - v * sweep).norm() <=
+                  construction_round_off_mm);
             const Partials at = partials(s, {u, v});
             CHECK((at.dv - sweep).norm() <= 1e-11);
             CHECK((at.du - derivative(c, u)).norm() <= 1e-9 * (1 + at.du.norm()));
@@ -119,12 +121,12 @@ TEST_CASE("5: a revolution keeps heights and distances from the axis") {
             const Point3 profile = axis.to_local(evaluate(c, v));
             const Point3 p = axis.to_local(evaluate(s, {random.between(-9, 9), v}));
             const double radius = std::hypot(profile.x(), profile.y());
-            CHECK(std::abs(p.z() - profile.z()) <= round_off_mm);
-            CHECK(std::abs(std::hypot(p.x(), p.y()) - radius) <= round_off_mm);
+            CHECK(std::abs(p.z() - profile.z()) <= construction_round_off_mm);
+            CHECK(std::abs(std::hypot(p.x(), p.y()) - radius) <= construction_round_off_mm);
             // A quarter of a turn is where it should be, from x towards y.
             const Point3 quarter = axis.to_local(evaluate(s, {pi / 2, v}));
             CHECK((quarter - Point3(-profile.y(), profile.x(), profile.z())).norm() <=
-                  round_off_mm);
+                  construction_round_off_mm);
         }
     }
 }

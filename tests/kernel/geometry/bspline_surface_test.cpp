@@ -18,7 +18,7 @@ using lyr::test::Random;
 namespace {
 
 // De Casteljau on intermediate points of at most 100 mm: far below what coordinates carry.
-constexpr double piece_bound_mm = 1e-10;
+constexpr double patch_bound_mm = 1e-10;
 
 Point3 bezier_at(const BezierPatch& patch, double u, double v) {
     const auto order_u = static_cast<std::size_t>(patch.degree_u) + 1;
@@ -128,7 +128,7 @@ TEST_CASE("2: the patches together are the surface, and neighbours share their b
             for (const auto& [a, b] : {std::pair(0.0, 0.0), {0.3, 0.8}, {1.0, 0.5}, {1.0, 1.0}}) {
                 const Point2 uv(patch.from_u + a * (patch.to_u - patch.from_u),
                                 patch.from_v + b * (patch.to_v - patch.from_v));
-                CHECK((bezier_at(patch, a, b) - evaluate(s, uv)).norm() <= piece_bound_mm);
+                CHECK((bezier_at(patch, a, b) - evaluate(s, uv)).norm() <= patch_bound_mm);
             }
             if (k % all.spans_v > 0) {
                 const BezierPatch& before = all.patches[k - 1];

@@ -11,6 +11,7 @@
 #include "kernel/geometry/tolerance.h"
 
 using namespace lyr;
+using lyr::test::inversion_bound_mm;
 using lyr::test::Random;
 using lyr::test::random_stretch;
 using lyr::test::Stretch;
@@ -20,7 +21,6 @@ namespace {
 
 // Round-off of a few operations on coordinates up to a few thousand millimetres.
 constexpr double round_off_mm = 1e-10;
-constexpr double inversion_bound_mm = resolution_mm;
 constexpr double height_bound_mm = resolution_mm / 100;
 constexpr int dense = 400;
 

@@ -6,8 +6,11 @@
 #include <random>
 
 #include "kernel/geometry/curve.h"
+#include "kernel/geometry/tolerance.h"
 
 namespace lyr::test {
+
+inline constexpr double inversion_bound_mm = resolution_mm;
 
 class Random {
 public:

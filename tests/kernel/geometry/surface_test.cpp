@@ -10,14 +10,13 @@
 #include "kernel/geometry/tolerance.h"
 
 using namespace lyr;
+using lyr::test::inversion_bound_mm;
 using lyr::test::Random;
 using std::numbers::pi;
 
 namespace {
 
-constexpr double inversion_bound_mm = resolution_mm;
-
-Surface random_surface(Random& random) {
+Surface random_elementary_surface(Random& random) {
     const Frame frame = random.frame();
     switch (random.integer(0, 4)) {
         case 0:
@@ -48,7 +47,7 @@ Point2 random_parameters(Random& random, const Surface& surface) {
 TEST_CASE("3: the point of a surface's parameters is found again") {
     Random random(21);
     for (int i = 0; i < 3000; ++i) {
-        const Surface s = random_surface(random);
+        const Surface s = random_elementary_surface(random);
         const Point3 p = evaluate(s, random_parameters(random, s));
         CHECK((evaluate(s, invert(s, p)) - p).norm() <= inversion_bound_mm);
     }
@@ -57,7 +56,7 @@ TEST_CASE("3: the point of a surface's parameters is found again") {
 TEST_CASE("3: no point of the surface is nearer, and the offset is along the normal") {
     Random random(22);
     for (int i = 0; i < 1000; ++i) {
-        const Surface s = random_surface(random);
+        const Surface s = random_elementary_surface(random);
         const Point3 p = random.vector(100);
         const Point2 uv = invert(s, p);
         const Vector3 offset = p - evaluate(s, uv);
@@ -83,7 +82,7 @@ TEST_CASE("3: angles are in (-pi, pi]") {
 TEST_CASE("2: the normal points away from the axis, centre and tube centre, mirrored or not") {
     Random random(23);
     for (int i = 0; i < 2000; ++i) {
-        const Surface s = random_surface(random);
+        const Surface s = random_elementary_surface(random);
         const Point2 uv = random_parameters(random, s);
         const Vector3 n = normal(s, uv);
         CHECK(n.norm() == doctest::Approx(1));

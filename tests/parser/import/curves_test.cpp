@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "checks.h"
+#include "flat_curves.h"
 
 using namespace lyr;
 using namespace lyr::test;
@@ -34,10 +35,6 @@ Edge edge_on(const std::function<int(StepText&)>& curve, const Point3& start, co
     CHECK(near(evaluate(found.curve, found.t_start), start));
     CHECK(near(evaluate(found.curve, found.t_end), end));
     return found;
-}
-
-Point3 middle(const Edge& edge) {
-    return evaluate(edge.curve, 0.5 * (edge.t_start + edge.t_end));
 }
 
 std::string points(StepText& step, const std::vector<Point3>& list) {
