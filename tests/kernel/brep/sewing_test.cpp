@@ -24,7 +24,7 @@ using lyr::test::Random;
 
 namespace {
 
-constexpr SewingReach reach{0.001, 0.01};
+constexpr SewingReach sewing_reach{0.001, 0.01};
 
 Model moved(const Model& model, const Vector3& by) {
     return transformed(model, Eigen::Affine3d(Eigen::Translation3d(by)));
@@ -95,7 +95,7 @@ TEST_CASE("sewing 1: a missing face leaves a hole with just its edges") {
             CAPTURE(face.source);
             for (const bool as_surfaces : {false, true}) {
                 Explosion how;
-                how.jitter_mm = reach.accepted_mm;
+                how.jitter_mm = sewing_reach.accepted_mm;
                 how.as_surfaces = as_surfaces;
                 how.turns_faces = true;
                 Model model = exploded(original, how);
@@ -118,7 +118,7 @@ TEST_CASE("sewing 1: a missing face leaves a hole with just its edges") {
                     model = without_face(model, face.source);
                 }
                 Diagnostics found;
-                heal(model, reach, found);
+                heal(model, sewing_reach, found);
                 CHECK(model.faces.size() == original.faces.size() - 1);
                 std::set<SourceId> named;
                 for (const Gap& gap : gaps(model)) {
@@ -147,7 +147,7 @@ TEST_CASE("sewing 1: closed edges that begin in different places are one") {
             model.vertices[edge.start.value].point = evaluate(edge.curve, edge.t_start);
         }
         Diagnostics found;
-        heal(model, reach, found);
+        heal(model, sewing_reach, found);
         CHECK(validate(model).empty());
         CHECK(volumes_of(model).size() == 1);
         CHECK(volumes_of(model)[0] == doctest::Approx(pi * 4 * 5));
@@ -159,7 +159,7 @@ TEST_CASE("sewing 1: gaps beyond the limit stay open") {
     for (Face& face : model.faces) {
         if (face.source != 2000) continue;
         // The face as a whole, a little away.
-        const Vector3 away(-2 * reach.limit_mm, 0, 0);
+        const Vector3 away(-2 * sewing_reach.limit_mm, 0, 0);
         const Loop& loop = model.loops[face.first_loop];
         for (std::uint32_t c = 0; c < loop.coedge_count; ++c) {
             Edge& edge = model.edges[model.coedges[loop.first_coedge + c].edge.value];
@@ -169,7 +169,7 @@ TEST_CASE("sewing 1: gaps beyond the limit stay open") {
         }
     }
     Diagnostics found;
-    heal(model, reach, found);
+    heal(model, sewing_reach, found);
     CHECK(free_edges(model).size() == 8);
     CHECK(gaps(model).size() == 2);
 }
@@ -182,7 +182,7 @@ TEST_CASE("sewing 2: solids keep to themselves, surfaces do not") {
         Model model = joined(left, right);
         for (Shell& shell : model.shells) shell.is_surface = as_surfaces;
         Diagnostics found;
-        heal(model, reach, found);
+        heal(model, sewing_reach, found);
         CHECK(model.solids.size() == (as_surfaces ? 1 : 2));
         CHECK(validate(model).empty() == as_surfaces);
         if (as_surfaces) CHECK(volumes_of(model)[0] == doctest::Approx(4 * 4 * 5));
@@ -202,7 +202,7 @@ TEST_CASE("sewing 2: bodies that touch in whole faces stay apart, whatever way f
         const Model other = moved(exploded(box(2, 3, 6), how), {2, 0, 1});
         Model model = joined(one, other);
         Diagnostics found;
-        heal(model, reach, found);
+        heal(model, sewing_reach, found);
         const std::vector<double> volumes = volumes_of(model);
         REQUIRE(volumes.size() == 2);
         CHECK(volumes[0] == doctest::Approx(24));
@@ -212,11 +212,11 @@ TEST_CASE("sewing 2: bodies that touch in whole faces stay apart, whatever way f
 
 TEST_CASE("sewing 3: what is not free stays as it is, and the rest in its place") {
     Explosion how;
-    how.jitter_mm = reach.accepted_mm;
+    how.jitter_mm = sewing_reach.accepted_mm;
     Model model = joined(drilled_box(10, 8, 6, 2), moved(exploded(box(3, 4, 5), how), {30, 0, 0}));
     const Model before = model;
     Diagnostics found;
-    sew(model, reach, found);
+    sew(model, sewing_reach, found);
     for (std::size_t e = 0; e < drilled_box(10, 8, 6, 2).edges.size(); ++e) {
         CHECK(model.edges[e].start == before.edges[e].start);
         CHECK(model.edges[e].end == before.edges[e].end);
@@ -224,8 +224,8 @@ TEST_CASE("sewing 3: what is not free stays as it is, and the rest in its place"
     }
     for (const Coedge& coedge : model.coedges) {
         const Edge& edge = model[coedge.edge];
-        CHECK((point_on(edge, 0) - model[edge.start].point).norm() <= 2 * reach.accepted_mm);
-        CHECK((point_on(edge, 1) - model[edge.end].point).norm() <= 2 * reach.accepted_mm);
+        CHECK((point_on(edge, 0) - model[edge.start].point).norm() <= 2 * sewing_reach.accepted_mm);
+        CHECK((point_on(edge, 1) - model[edge.end].point).norm() <= 2 * sewing_reach.accepted_mm);
     }
 }
 
@@ -241,6 +241,6 @@ TEST_CASE("a sheet and its double close, but bound no volume") {
     Model model = b.finish();
     model.shells[0].is_surface = true;
     Diagnostics found;
-    heal(model, reach, found);
+    heal(model, sewing_reach, found);
     CHECK(model.shells[0].is_surface);
 }

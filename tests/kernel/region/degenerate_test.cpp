@@ -10,8 +10,6 @@ using namespace lyr::testing;
 
 namespace {
 
-constexpr double allowed_mm = 1e-5;
-
 // A quarter of a ring about a point: two lines and two arcs.
 Path quarter_ring(const Point2& centre, double inner, double outer, int quarter) {
     const auto on = [&](double radius, int q) {
@@ -137,8 +135,8 @@ TEST_CASE("region: shapes on a grid, turned and jittered, are united as their wi
                 regions.push_back(moved(grid_shape(random), motion));
                 for (Contour& contour : regions.back()) contour = jittered(contour, jitter, random);
             }
-            check_union(regions, allowed_mm, random);
-            check_union(regions, 100 * allowed_mm, random);
+            check_union(regions, fine_mm, random);
+            check_union(regions, 100 * fine_mm, random);
         }
     }
 }
@@ -289,11 +287,11 @@ TEST_CASE("region: an arc of almost a whole turn over a chord of a snap stays on
     check_union({{FullCircle{{5.00000019, -3.999999911}, 3.999999631, true},
                   FullCircle{{5.00000068, -2.0000009}, 1.999999337, false}},
                  {}},
-                allowed_mm, random);
+                fine_mm, random);
     const auto result =
         combined(Contours{FullCircle{{5.00000019, -3.999999911}, 3.999999631, true}},
                  Contours{FullCircle{{5.00000068, -2.0000009}, 1.999999337, true}},
-                 Operation::subtract, allowed_mm);
+                 Operation::subtract, fine_mm);
     REQUIRE(result.unresolved == 0);
     CHECK(total_area(result.contours) == doctest::Approx(12 * pi).epsilon(1e-5));
     CHECK(winding(result.contours, {5, -7.9}) == 1);
@@ -310,8 +308,8 @@ TEST_CASE("region: a corner just outside a circle that its side is tangent to") 
                        {{-1.958180855, -0.406854652}}}};
     const Contours disc{FullCircle{{-5.874540594, -1.220563444}, 3.999999238, true}};
     Random random(14);
-    check_union({{square}, disc}, allowed_mm, random);
-    const auto result = unite_all({{square}, disc}, allowed_mm);
+    check_union({{square}, disc}, fine_mm, random);
+    const auto result = unite_all({{square}, disc}, fine_mm);
     CHECK(total_area(result.contours) == doctest::Approx(12 * pi + 16).epsilon(1e-5));
 }
 
@@ -323,7 +321,7 @@ TEST_CASE("region: an arc whose first bit beyond its circle's top is shorter tha
     slot_end.segments.push_back({slot_end.start});
     const Contours box{rectangle(3.9999996, -8.0000024, 8.0000017, -3.9999995)};
     Random random(15);
-    check_union({{slot_end}, box}, allowed_mm, random);
-    const auto result = unite_all({{slot_end}, box}, allowed_mm);
+    check_union({{slot_end}, box}, fine_mm, random);
+    const auto result = unite_all({{slot_end}, box}, fine_mm);
     CHECK(winding(result.contours, {3.9, -5.5}) == 1);
 }

@@ -17,6 +17,9 @@ using std::numbers::pi;
 
 using Contours = std::vector<Contour>;
 
+// What is allowed where results are to be as good as they get.
+inline constexpr double fine_mm = 1e-5;
+
 inline double total_area(const Contours& contours) {
     double area = 0;
     for (const Contour& contour : contours) area += area_mm2(contour);
