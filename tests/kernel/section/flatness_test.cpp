@@ -90,7 +90,7 @@ double at_height(const FlatnessProfile& profile, double z) {
     return profile.between(z - height_step_mm, z + height_step_mm);
 }
 
-struct TestCase {
+struct SurveyedSolid {
     std::string name;
     Model model;
     int heights = 6;
@@ -141,8 +141,8 @@ Model freeform_half_cone(double radius, double height) {
     return model;
 }
 
-std::vector<TestCase> solids() {
-    std::vector<TestCase> all;
+std::vector<SurveyedSolid> surveyed_solids() {
+    std::vector<SurveyedSolid> all;
     all.push_back({"box", box(10, 20, 30)});
     all.push_back({"drilled box", drilled_box(20, 20, 10, 4)});
     all.push_back({"frustum", frustum(8, 3, 12, Side::halves)});
@@ -179,7 +179,7 @@ std::vector<Eigen::Affine3d> placements() {
 // Calls check(solid, model, cutter, profile, z) at some heights of every solid in every placement.
 template <class Check>
 void at_all_heights(Check check) {
-    for (const TestCase& solid : solids()) {
+    for (const SurveyedSolid& solid : surveyed_solids()) {
         CAPTURE(solid.name);
         for (std::size_t number = 0; number < solid.placements; ++number) {
             CAPTURE(number);
@@ -201,7 +201,7 @@ void at_all_heights(Check check) {
 
 TEST_CASE("flatness 1: no point of a face is flatter than the profile at its height") {
     std::size_t checked = 0;
-    at_all_heights([&](const TestCase&, const Model& model, const Cutter& cutter,
+    at_all_heights([&](const SurveyedSolid&, const Model& model, const Cutter& cutter,
                        const FlatnessProfile& profile, double z) {
         for (const Sample& sample : samples_at(model, cutter, z)) {
             ++checked;
@@ -214,7 +214,7 @@ TEST_CASE("flatness 1: no point of a face is flatter than the profile at its hei
 TEST_CASE("flatness 2: the profile is no flatter than some point nearby, but for the slack") {
     // Points of a section miss its flattest one by less than this.
     constexpr double missed = 0.02;
-    at_all_heights([&](const TestCase& solid, const Model& model, const Cutter& cutter,
+    at_all_heights([&](const SurveyedSolid& solid, const Model& model, const Cutter& cutter,
                        const FlatnessProfile& profile, double z) {
         const double bound = at_height(profile, z);
         if (bound <= fine.least || solid.has_tip) return;
@@ -260,7 +260,7 @@ TEST_CASE("flatness 1: a free-form dome is level at its top, over its loops, too
 // Bounds that did not become closer as cells became smaller, and edges to an apex that seemed to cross every cell, took
 // a million.
 TEST_CASE("flatness: no face takes many cells, however its axis leans") {
-    for (const TestCase& solid : solids()) {
+    for (const SurveyedSolid& solid : surveyed_solids()) {
         CAPTURE(solid.name);
         for (std::size_t number = 0; number < solid.placements; ++number) {
             CAPTURE(number);
