@@ -15,11 +15,10 @@ namespace {
 using test::Errors;
 using test::errors_of;
 using test::Job;
+using test::moved_steps;
 using test::Real;
 using test::timed_run;
 using test::TimedRun;
-
-constexpr Real moved_steps = 5e-4;
 
 std::shared_ptr<const BedMesh> wavy(double pitch_mm, double height_mm, double fade_mm) {
     std::vector<double> heights_mm;

@@ -24,6 +24,9 @@ using Real =
     std::conditional_t<std::numeric_limits<long double>::digits <= 64, long double, double>;
 using AxisReals = std::array<Real, axis_count>;
 
+// Contract 2 of both generators: no step is off its time by more.
+inline constexpr Real exact_ns = 1000;
+
 inline Limits even_limits(double speed_mm_s, double acceleration_mm_s2) {
     Limits limits;
     limits.axes.fill({speed_mm_s, acceleration_mm_s2});

@@ -19,7 +19,7 @@ using test::Run;
 // A difference is a mean of what it is taken for, so that only rounding can put it above the limit:
 // four positions of up to 200 mm, over the square of a time of at least 0.1 us, or 5 us where a Real
 // has the digits of a double.
-constexpr Real rounding = 1e-6;
+constexpr Real share_of_rounding = 1e-6;
 constexpr Real rounding_mm_s2 = 0.02;
 constexpr Real shortest_s = 1e-4;
 constexpr Real share_of_phase = std::numeric_limits<Real>::digits >= 64 ? 1e-3 : 0.05;
@@ -75,11 +75,12 @@ TEST_CASE("limits 1, planner 2: no axis is ever faster or accelerated more than 
             const Run run{job, test::plan_of(job), {}, {}, 0};
             const Largest found = largest(run);
             for (std::size_t i = 0; i < axis_count; ++i) {
-                CHECK(found.speed[i] <= job.limits.axes[i].speed_mm_s * (1 + rounding));
+                CHECK(found.speed[i] <= job.limits.axes[i].speed_mm_s * (1 + share_of_rounding));
                 CHECK(found.acceleration[i] <=
-                      job.limits.axes[i].acceleration_mm_s2 * (1 + rounding) + rounding_mm_s2);
+                      job.limits.axes[i].acceleration_mm_s2 * (1 + share_of_rounding) +
+                          rounding_mm_s2);
             }
-            CHECK(found.along_path <= 1 + rounding);
+            CHECK(found.along_path <= 1 + share_of_rounding);
         }
 }
 

@@ -18,7 +18,7 @@ using test::plan_of;
 
 using std::numbers::pi;
 // Of squared speeds, relative.
-constexpr double rounding = 1e-9;
+constexpr double relative_rounding = 1e-9;
 
 double start_speed(const PlannedMove& planned) {
     return planned.profile.phases[0].speed_mm_s;
@@ -62,16 +62,16 @@ void check_plan(const Job& job, const std::vector<PlannedMove>& plan) {
         const MoveLimits own = limits_of(job.moves[i], job.limits);
         REQUIRE(start_speed(plan[i]) == last_speed);
         for (const Phase& phase : profile.phases) {
-            REQUIRE(phase.speed_mm_s <= own.speed_mm_s * (1 + rounding));
+            REQUIRE(phase.speed_mm_s <= own.speed_mm_s * (1 + relative_rounding));
             // Of S-curves rounding may make the ramps a little steeper.
-            const double steeper = job.limits.jerk_mm_s3 > 0 ? rounding : 0;
+            const double steeper = job.limits.jerk_mm_s3 > 0 ? relative_rounding : 0;
             REQUIRE(std::abs(phase.acceleration_mm_s2) <= own.acceleration_mm_s2 * (1 + steeper));
         }
         REQUIRE(std::abs(profile.speed_at(profile.duration_s) - profile.end_speed_mm_s) <
                 1e-7 * own.speed_mm_s);
         if (i > 0)
-            REQUIRE(last_speed <=
-                    corner_speed_mm_s(job.moves[i - 1], job.moves[i], job.limits) * (1 + rounding));
+            REQUIRE(last_speed <= corner_speed_mm_s(job.moves[i - 1], job.moves[i], job.limits) *
+                                      (1 + relative_rounding));
         const double start_ns = static_cast<double>(plan[i].start_ns) + plan[i].start_part_ns;
         REQUIRE(start_ns == doctest::Approx(last_end_ns).epsilon(1e-14));
         REQUIRE(plan[i].start_part_ns >= 0);
@@ -103,7 +103,7 @@ TEST_CASE("planner 1, 2: so they are with a small window, which costs time only"
                 job.capacity = capacity;
                 const std::vector<PlannedMove> plan = plan_of(job);
                 check_plan(job, plan);
-                CHECK(duration_s(plan) >= best_s * (1 - rounding));
+                CHECK(duration_s(plan) >= best_s * (1 - relative_rounding));
                 CHECK(duration_s(plan) <= last_s * (1 + 0.01));
                 last_s = duration_s(plan);
             }
@@ -126,7 +126,7 @@ TEST_CASE("planner 3: no junction could be passed faster") {
                 const double gain = 2 * before.acceleration_mm_s2 * plan[i - 1].profile.length_mm;
                 const double loss = 2 * after.acceleration_mm_s2 * plan[i].profile.length_mm;
                 const double most = std::min({own * own, come * come + gain, leave * leave + loss});
-                REQUIRE(here * here == doctest::Approx(most).epsilon(rounding));
+                REQUIRE(here * here == doctest::Approx(most).epsilon(relative_rounding));
             }
         }
 }
@@ -214,7 +214,7 @@ TEST_CASE(
                     job.limits.minimum_cruise_ratio = ratio;
                     job.capacity = job.moves.size() + 1;
                     const double best_s = duration_s(plan_of(job));
-                    CHECK(best_s >= last_s * (1 - rounding));
+                    CHECK(best_s >= last_s * (1 - relative_rounding));
                     last_s = best_s;
                     for (const std::size_t capacity : {4u, 16u, 256u, 401u}) {
                         job.capacity = capacity;
@@ -284,7 +284,7 @@ TEST_CASE("planner 7: windows that hold a slow place plan as one that holds all"
             for (std::size_t i = 0; i < plan.size(); ++i) {
                 REQUIRE(start_speed(plan[i]) == doctest::Approx(start_speed(whole[i])));
                 REQUIRE(plan[i].profile.duration_s ==
-                        doctest::Approx(whole[i].profile.duration_s).epsilon(rounding));
+                        doctest::Approx(whole[i].profile.duration_s).epsilon(relative_rounding));
             }
         }
     }

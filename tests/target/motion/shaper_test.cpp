@@ -16,6 +16,7 @@ namespace {
 
 using test::Job;
 using test::MotorStep;
+using test::Real;
 using test::TimedRun;
 
 using std::numbers::pi;

@@ -82,7 +82,7 @@ void report(const std::string& what, const test::Job& job) {
     report(what, rate_of(job));
 }
 
-Delta delta_of(double steps_per_mm) {
+Delta delta_to_measure(double steps_per_mm) {
     Delta delta{{steps_per_mm, steps_per_mm, steps_per_mm, 415}, {}};
     for (std::size_t i = 0; i < Delta::tower_count; ++i) {
         const double angle_rad = (210.0 + 120.0 * static_cast<double>(i)) * std::numbers::pi / 180;
@@ -161,12 +161,12 @@ TEST_CASE("speed: the same with every option" * doctest::skip()) {
             report(with + ", CoreXY, EI, pressure advance",
                    timed_rate_of(job, CoreXy{steps}, all_shaped()));
             report(with + ", CoreXY, mesh", timed_rate_of(job, CoreXy{steps}, over_bed({})));
-            report(with + ", delta, mesh", timed_rate_of(job, delta_of(80), over_bed({})));
+            report(with + ", delta, mesh", timed_rate_of(job, delta_to_measure(80), over_bed({})));
             report(with + ", delta, mesh, EI, pressure advance",
-                   timed_rate_of(job, delta_of(80), over_bed(all_shaped())));
-            report(with + ", delta", timed_rate_of(job, delta_of(80), {}));
+                   timed_rate_of(job, delta_to_measure(80), over_bed(all_shaped())));
+            report(with + ", delta", timed_rate_of(job, delta_to_measure(80), {}));
             report(with + ", delta, EI, pressure advance",
-                   timed_rate_of(job, delta_of(80), all_shaped()));
+                   timed_rate_of(job, delta_to_measure(80), all_shaped()));
         }
     }
 }

@@ -13,6 +13,7 @@ namespace {
 
 using test::allowed_deviation;
 using test::even_limits;
+using test::exact_ns;
 using test::Job;
 using test::largest_deviation;
 using test::largest_time_error_ns;
@@ -23,8 +24,6 @@ using test::run;
 using test::steps_of;
 
 using std::numbers::pi;
-// Contract 2.
-constexpr Real exact_ns = 1000;
 
 // Contract 1, 2 and 5. Returns the largest error of a step's time.
 Real check_steps(const Run& done) {

@@ -12,8 +12,10 @@ namespace {
 
 using test::Errors;
 using test::errors_of;
+using test::exact_ns;
 using test::Job;
 using test::MotorStep;
+using test::moved_steps;
 using test::Real;
 using test::Run;
 using test::steps_of;
@@ -21,11 +23,6 @@ using test::timed_run;
 using test::TimedRun;
 
 using std::numbers::pi;
-// Contract 2.
-constexpr Real exact_ns = 1000;
-// In the nanosecond that times are rounded to a motor at 300 mm/s and 800 steps/mm, twice as fast on
-// crossed belts, moves so much.
-constexpr Real moved_steps = 5e-4;
 
 Delta delta_of(double steps_per_mm) {
     Delta delta{{steps_per_mm, steps_per_mm, steps_per_mm, 415.3}, {}};
@@ -44,7 +41,7 @@ Job near_middle(unsigned seed, std::size_t count, double size_mm) {
     return job;
 }
 
-Real check_steps(const TimedRun& timed) {
+Real check_exact(const TimedRun& timed) {
     const std::vector<StepEvent>& events = timed.run.events;
     CHECK(std::is_sorted(events.begin(), events.end(), [](const StepEvent& a, const StepEvent& b) {
         return a.time_ns < b.time_ns;
@@ -84,8 +81,8 @@ TEST_CASE("timed 1, 2: crossed belts and a delta, on lines and arcs of all sizes
         for (const double size_mm : {0.02, 1.0, 12.0}) {
             const Job job = near_middle(seed, size_mm > 10 ? 3 : 25, size_mm);
             worst_ns =
-                std::max(worst_ns, check_steps(timed_run(job, CoreXy{{80, 80, 400, 415}}, {})));
-            worst_ns = std::max(worst_ns, check_steps(timed_run(job, delta_of(100), {})));
+                std::max(worst_ns, check_exact(timed_run(job, CoreXy{{80, 80, 400, 415}}, {})));
+            worst_ns = std::max(worst_ns, check_exact(timed_run(job, delta_of(100), {})));
         }
     MESSAGE("largest error of a step's time: ", static_cast<double>(worst_ns), " ns");
 }
@@ -106,9 +103,9 @@ TEST_CASE("timed 1, 2: with shapers, pressure advance and a limit of jerk" *
             job.limits.jerk_mm_s3 = jerk_mm_s3;
             for (const Kinematics& machine :
                  {Kinematics{job.cartesian}, Kinematics{CoreXy{{80, 80, 400, 415}}}})
-                worst_ns = std::max(worst_ns, check_steps(timed_run(job, machine, uneven)));
-            worst_ns = std::max(worst_ns, check_steps(timed_run(job, delta_of(100), shaping)));
-            worst_ns = std::max(worst_ns, check_steps(timed_run(job, delta_of(100), {})));
+                worst_ns = std::max(worst_ns, check_exact(timed_run(job, machine, uneven)));
+            worst_ns = std::max(worst_ns, check_exact(timed_run(job, delta_of(100), shaping)));
+            worst_ns = std::max(worst_ns, check_exact(timed_run(job, delta_of(100), {})));
         }
     MESSAGE("largest error of a step's time: ", static_cast<double>(worst_ns), " ns");
 }
