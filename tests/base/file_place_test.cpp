@@ -9,19 +9,11 @@
 #include <fstream>
 #include <vector>
 
+#include "base/fresh_folder.h"
+
 using namespace lyr;
+using lyr::tests::fresh_folder;
 namespace fs = std::filesystem;
-
-namespace {
-
-fs::path fresh_folder(const std::string& name) {
-    const fs::path folder = fs::path(LYR_BUILD) / "test-file-place" / name;
-    fs::remove_all(folder);
-    fs::create_directories(folder);
-    return folder;
-}
-
-}  // namespace
 
 TEST_CASE("same file: one file by all its names, there or not") {
     const fs::path folder = fresh_folder("names");

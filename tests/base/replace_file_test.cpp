@@ -14,18 +14,13 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/fresh_folder.h"
+
 using namespace lyr;
+using lyr::tests::fresh_folder;
 namespace fs = std::filesystem;
 
 namespace {
-
-// An empty folder of its own for each test.
-fs::path fresh_folder(const std::string& name) {
-    const fs::path folder = fs::path(LYR_BUILD) / "test-replace-file" / name;
-    fs::remove_all(folder);
-    fs::create_directories(folder);
-    return folder;
-}
 
 std::string text_of(const fs::path& path) {
     std::ifstream file(path);

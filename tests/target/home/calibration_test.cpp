@@ -70,14 +70,6 @@ double flatness_mm(const config::Printer& found, const config::Printer& truth) {
     return worst_mm;
 }
 
-thermal::Fault fault(double time_s, thermal::FaultKind kind, std::size_t contact,
-                     double value = 0) {
-    thermal::Fault fault{time_s, kind};
-    fault.contact = contact;
-    fault.value = value;
-    return fault;
-}
-
 void check_failure(const Result<Calibrated>& found, const std::string& part) {
     REQUIRE_FALSE(found.ok());
     CAPTURE(found.error().message);

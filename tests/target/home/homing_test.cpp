@@ -22,14 +22,6 @@ void check_failure(const Result<home::Homed>& homed, const std::string& part) {
     CHECK(homed.error().message.find(part) != std::string::npos);
 }
 
-thermal::Fault fault(double time_s, thermal::FaultKind kind, std::size_t contact,
-                     double value = 0) {
-    thermal::Fault fault{time_s, kind};
-    fault.contact = contact;
-    fault.value = value;
-    return fault;
-}
-
 }  // namespace
 
 TEST_CASE("homing 2: a head at the upper endstop of z was lifted into it first") {

@@ -76,9 +76,9 @@ private:
 
 // Keeps what is written to its lines. With one of the writes its contact closes, or somebody asks for a stop; the thread
 // that writes waits there until the other one has taken notice, where there is another.
-class Bench final : public gpio::GpioChip, public gpio::InputLines {
+class RecordedLines final : public gpio::GpioChip, public gpio::InputLines {
 public:
-    Bench(gpio::Clock& clock, std::size_t most_writes) : clock_(clock) {
+    RecordedLines(gpio::Clock& clock, std::size_t most_writes) : clock_(clock) {
         writes_.reserve(most_writes);
     }
     std::size_t meets_at = 0;  // the number of that write, from 1; 0: none
@@ -147,7 +147,7 @@ std::vector<motion::Move> along_x(const config::Printer& printer, double way_mm)
 Edges executed(const config::Printer& printer, const Edges& edges, std::size_t meets_at,
                int requests) {
     HurriedClock clock;
-    Bench bench(clock, edges.size() + 8);
+    RecordedLines bench(clock, edges.size() + 8);
     run::StopRequests stop{0};
     bench.meets_at = meets_at;
     bench.met = [&] { stop += requests; };
@@ -195,7 +195,7 @@ TEST_CASE("mover 5: a move that the planner refuses is refused before anything m
     for (const bool is_board : {false, true}) {
         const config::Printer printer = fine_machine();
         HurriedClock clock;
-        Bench bench(clock, 100);
+        RecordedLines bench(clock, 100);
         run::StopSource stop;
         if (is_board) stop = [] { return 0u; };
         Mover mover(printer, bench, clock, nullptr, stop);
@@ -219,7 +219,7 @@ TEST_CASE(
     for (const bool is_board : {false, true}) {
         CAPTURE(is_board);
         HurriedClock clock;
-        Bench bench(clock, all.size() + 8);
+        RecordedLines bench(clock, all.size() + 8);
         bench.waits = is_board;
         run::StopSource stop;
         if (is_board) stop = [] { return 0u; };
@@ -247,7 +247,7 @@ TEST_CASE(
     for (const bool is_board : {false, true}) {
         CAPTURE(is_board);
         HurriedClock clock;
-        Bench bench(clock, all.size() + 8);
+        RecordedLines bench(clock, all.size() + 8);
         bench.waits = is_board;
         bench.is_contact = true;
         bench.meets_at = closes_at;
@@ -276,7 +276,7 @@ TEST_CASE(
     for (const unsigned requests : {1u, 2u}) {
         CAPTURE(requests);
         HurriedClock clock;
-        Bench bench(clock, all.size() + 8);
+        RecordedLines bench(clock, all.size() + 8);
         bench.waits = true;
         bench.meets_at = asked_at;
         Mover mover(printer, bench, clock, nullptr, [&] { return bench.notice() ? requests : 0u; });

@@ -21,9 +21,9 @@ using config::Kinematics;
 namespace {
 
 // A machine for two threads: one writes its lines, the other reads its contacts.
-class Bench final : public gpio::GpioChip, public gpio::InputLines {
+class SharedMachine final : public gpio::GpioChip, public gpio::InputLines {
 public:
-    Bench(std::int64_t count, const gpio::Clock& clock) : count_(count), clock_(clock) {}
+    SharedMachine(std::int64_t count, const gpio::Clock& clock) : count_(count), clock_(clock) {}
 
     std::size_t line_count() const override { return 8; }
     Status write(gpio::LineMask changed, gpio::LineMask levels) override {
@@ -75,12 +75,6 @@ config::Printer one_axis() {
     printer.homing.lift_mm = 0;
     printer.pulse.late_limit_ns = 10'000'000'000;  // the machine of a test may be busy
     return printer;
-}
-
-std::vector<motion::Move> along_x(const config::Printer& printer, double way_mm,
-                                  double speed_mm_s) {
-    const auto& [x, y, z] = printer.start_mm;
-    return {{motion::Line{{x, y, z}, {x + way_mm, y, z}}, speed_mm_s}};
 }
 
 }  // namespace
@@ -159,7 +153,7 @@ TEST_CASE("mover 1, 2: a contact stops the machine on its path, and what it ran 
 TEST_CASE("mover 4: homed with threads on the real clock, as on a board") {
     const config::Printer printer = one_axis();
     gpio::MonotonicClock clock;
-    Bench bench(3 * 80 + 17, clock);
+    SharedMachine bench(3 * 80 + 17, clock);
     const run::StopSignals signals;
     Mover mover(printer, bench, clock, &bench, [&] { return signals.wait_ms(0) ? 1U : 0U; });
     const auto homed = home::home(mover, printer, homable(printer));
@@ -171,7 +165,7 @@ TEST_CASE("mover 4: homed with threads on the real clock, as on a board") {
 TEST_CASE("mover 3: a signal brings the machine to rest, with status stopped") {
     const config::Printer printer = one_axis();
     gpio::MonotonicClock clock;
-    Bench bench(1'000'000, clock);
+    SharedMachine bench(1'000'000, clock);
     const run::StopSignals signals;
     Mover mover(printer, bench, clock, &bench, [&] { return signals.wait_ms(0) ? 1U : 0U; });
     std::thread user([] {

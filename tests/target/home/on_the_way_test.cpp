@@ -17,12 +17,6 @@ using config::Kinematics;
 
 namespace {
 
-std::vector<motion::Move> along_x(const config::Printer& printer, double way_mm,
-                                  double speed_mm_s) {
-    const auto& [x, y, z] = printer.start_mm;
-    return {{motion::Line{{x, y, z}, {x + way_mm, y, z}}, speed_mm_s}};
-}
-
 // A machine whose contacts do what a test says at each step of x.
 struct Bench {
     config::Printer printer = machine_of(Kinematics::cartesian);

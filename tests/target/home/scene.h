@@ -57,6 +57,20 @@ struct Scene {
     }
 };
 
+inline thermal::Fault fault(double time_s, thermal::FaultKind kind, std::size_t contact,
+                            double value = 0) {
+    thermal::Fault fault{time_s, kind};
+    fault.contact = contact;
+    fault.value = value;
+    return fault;
+}
+
+inline std::vector<motion::Move> along_x(const config::Printer& printer, double way_mm,
+                                         double speed_mm_s) {
+    const auto& [x, y, z] = printer.start_mm;
+    return {{motion::Line{{x, y, z}, {x + way_mm, y, z}}, speed_mm_s}};
+}
+
 // Lines of a machine that is looked at after each write.
 class HighestPlace final : public gpio::GpioChip {
 public:
