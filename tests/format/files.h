@@ -26,7 +26,7 @@ namespace lyr::format::test {
 
 using FileBytes = std::vector<std::byte>;
 
-inline constexpr Quantum quantum{1000};
+inline constexpr Quantum micrometres{1000};
 inline constexpr PathStyle wall_style{.role = Role::outer_wall, .width_mm = 0.45, .height_mm = 0.2};
 
 // A path in the build folder for one test's file.

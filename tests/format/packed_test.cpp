@@ -15,7 +15,7 @@
 using namespace lyr;
 using namespace lyr::format;
 using test::FileBytes;
-using test::quantum;
+using test::micrometres;
 using test::wall_style;
 
 namespace {
@@ -86,13 +86,13 @@ void draw(LayerEncoder& layer, const Wall& wall) {
 }
 
 std::int64_t quanta(double mm) {
-    return quantum.quanta(mm);
+    return micrometres.quanta(mm);
 }
 
 // Reads the layers back and compares every end and sagitta with what was drawn.
 void check_walls(const std::vector<Wall>& walls, const EncodedLayer& layer) {
     const std::string path = test::scratch("packed");
-    test::write_layers(path, quantum, {}, {layer});
+    test::write_layers(path, micrometres, {}, {layer});
     const test::Reading reading = test::read_file(path);
     REQUIRE_MESSAGE(!reading.error, to_string(*reading.error));
     std::size_t at = 0;
@@ -117,7 +117,7 @@ void check_walls(const std::vector<Wall>& walls, const EncodedLayer& layer) {
 }
 
 double bytes_per_motion(const std::vector<Wall>& walls) {
-    LayerEncoder encoder(quantum, {});
+    LayerEncoder encoder(micrometres, {});
     encoder.begin_path(wall_style);
     std::size_t motions = 0;
     for (const Wall& wall : walls) {
@@ -173,7 +173,7 @@ TEST_CASE("packed: runs go on from chunk to chunk") {
     std::vector<Wall> walls;
     for (int i = 0; i < 150; ++i) walls.push_back(way.wall(0.4 * (i % 3)));
     CHECK(bytes_per_motion(walls) < 1.1);
-    LayerEncoder encoder(quantum, {});
+    LayerEncoder encoder(micrometres, {});
     encoder.begin_path(wall_style);
     for (const Wall& wall : walls) draw(encoder, wall);
     const auto layer = encoder.finish();
@@ -235,13 +235,13 @@ TEST_CASE("packed: a layer starts without a history") {
     const Way way;
     std::vector<EncodedLayer> layers;
     for (const double inset_mm : {0.8, 0.4}) {
-        LayerEncoder encoder(quantum, {});
+        LayerEncoder encoder(micrometres, {});
         encoder.begin_path(wall_style);
         draw(encoder, way.wall(inset_mm));
         layers.push_back(*encoder.finish());
     }
     const std::string path = test::scratch("packed_layers");
-    test::write_layers(path, quantum, {}, layers);
+    test::write_layers(path, micrometres, {}, layers);
     const test::Reading both = test::read_file(path);
     REQUIRE(!both.error);
     auto reader = Reader::open(path);

@@ -10,13 +10,13 @@
 
 using namespace lyr;
 using namespace lyr::format;
-using test::quantum;
+using test::micrometres;
 using test::timed_wall_style;
 
 namespace {
 
 LayerEncoder pen() {
-    LayerEncoder layer(quantum, {});
+    LayerEncoder layer(micrometres, {});
     layer.begin_path(timed_wall_style);
     return layer;
 }

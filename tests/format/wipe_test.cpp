@@ -11,7 +11,7 @@
 using namespace lyr;
 using namespace lyr::format;
 using test::FileBytes;
-using test::quantum;
+using test::micrometres;
 using test::wall_style;
 
 namespace {
@@ -21,7 +21,7 @@ using Draw = std::function<void(LayerEncoder&)>;
 Result<EncodedLayer> layer_of(const Draw& draw) {
     LayerState state;
     state.retract_length_mm = 0.8;
-    LayerEncoder encoder(quantum, state);
+    LayerEncoder encoder(micrometres, state);
     encoder.begin_path(wall_style);
     draw(encoder);
     return encoder.finish();
@@ -31,7 +31,7 @@ test::Reading reading_of(const Draw& draw) {
     const auto layer = layer_of(draw);
     REQUIRE_MESSAGE(layer.ok(), to_string(layer.error()));
     const std::string path = test::scratch("wipe");
-    test::write_layers(path, quantum, {}, {*layer});
+    test::write_layers(path, micrometres, {}, {*layer});
     return test::read_file(path);
 }
 

@@ -14,13 +14,13 @@
 
 using namespace lyr;
 using namespace lyr::format;
-using test::quantum;
+using test::micrometres;
 using test::timed_wall_style;
 
 namespace {
 
 EncodedLayer random_layer(std::uint32_t seed, int calls) {
-    test::RandomLayer layer(seed, 0.2 * (seed + 1), quantum, calls);
+    test::RandomLayer layer(seed, 0.2 * (seed + 1), micrometres, calls);
     auto encoded = layer.finish();
     REQUIRE(encoded.ok());
     return std::move(*encoded);
@@ -43,7 +43,7 @@ std::string folder(const std::string& name) {
 // What finish() says of a layer that one call has spoilt.
 template <class Call>
 std::string mistake(Call call) {
-    LayerEncoder layer(quantum, {});
+    LayerEncoder layer(micrometres, {});
     layer.begin_path(timed_wall_style);
     call(layer);
     layer.line_to(1, 1);
@@ -67,7 +67,7 @@ TEST_CASE("writer 2: the bytes do not depend on threads") {
             });
         for (std::thread& thread : running) thread.join();
         const std::string path = test::scratch("threads" + std::to_string(threads));
-        test::write_layers(path, quantum, {}, encoded);
+        test::write_layers(path, micrometres, {}, encoded);
         return test::load(path);
     };
     const test::FileBytes one = bytes_with(1);
@@ -76,7 +76,7 @@ TEST_CASE("writer 2: the bytes do not depend on threads") {
 }
 
 TEST_CASE("writer 3: what rounds to no motion is left out, flat arcs are lines") {
-    LayerEncoder layer(quantum, {});
+    LayerEncoder layer(micrometres, {});
     layer.begin_path(timed_wall_style);
     layer.line_to(0.0004, -0.0004);
     layer.travel_to(0.0004, 0);
@@ -93,7 +93,7 @@ TEST_CASE("writer 3: what rounds to no motion is left out, flat arcs are lines")
     auto encoded = layer.finish();
     REQUIRE(encoded.ok());
     const std::string path = test::scratch("nothing");
-    test::write_layers(path, quantum, {}, {*encoded});
+    test::write_layers(path, micrometres, {}, {*encoded});
     const test::Reading reading = test::read_file(path);
     REQUIRE(!reading.error);
     std::size_t motions = 0;
@@ -138,19 +138,19 @@ TEST_CASE("writer 4: mistakes of the caller are kept until the layer is finished
     run.intervals = {&backwards, 1};
     has(mistake([&](LayerEncoder& l) { l.hatch(run); }), "before it starts");
 
-    LayerEncoder no_path(quantum, {});
+    LayerEncoder no_path(micrometres, {});
     no_path.line_to(1, 0);
     CHECK(!no_path.finish().ok());
     CHECK(!LayerEncoder(Quantum{0}, {}).finish().ok());
     LayerState state;
     state.height_mm = nan;
-    CHECK(!LayerEncoder(quantum, state).finish().ok());
+    CHECK(!LayerEncoder(micrometres, state).finish().ok());
 }
 
 TEST_CASE("writer 1: arcs of the widest kind and their rounding stay what they are") {
     // Tiny to huge, in all directions; the sagitta of a turn by 3/2 pi exactly.
     for (const double radius : {0.002, 0.01, 0.3, 5.0, 400.0}) {
-        LayerEncoder layer(quantum, {});
+        LayerEncoder layer(micrometres, {});
         layer.begin_path(timed_wall_style);
         for (int i = 0; i < 360; ++i) {
             const double from = i * std::numbers::pi / 180, to = from + 1.5 * std::numbers::pi;
@@ -161,7 +161,7 @@ TEST_CASE("writer 1: arcs of the widest kind and their rounding stay what they a
         auto encoded = layer.finish();
         REQUIRE_MESSAGE(encoded.ok(), to_string(encoded.error()));
         const std::string path = test::scratch("widest");
-        test::write_layers(path, quantum, {}, {*encoded});
+        test::write_layers(path, micrometres, {}, {*encoded});
         const test::Reading reading = test::read_file(path);
         REQUIRE(!reading.error);
         for (const test::Given& given : reading.given) {
@@ -184,16 +184,16 @@ TEST_CASE("writer 5: the file is whole or as it was, and nothing else stays") {
     const std::string where = folder("writer_failures");
     const std::string path = where + "/part.lyr";
     {
-        auto writer = Writer::create(path, quantum, {});
+        auto writer = Writer::create(path, micrometres, {});
         REQUIRE(writer.ok());
         REQUIRE(writer->append(random_layer(1, 50)).ok());
         CHECK(!std::filesystem::exists(path));
     }
     CHECK(files_in(where) == 0);
-    test::write_layers(path, quantum, {}, {random_layer(2, 50)});
+    test::write_layers(path, micrometres, {}, {random_layer(2, 50)});
     const test::FileBytes before = test::load(path);
     {
-        auto writer = Writer::create(path, quantum, {});
+        auto writer = Writer::create(path, micrometres, {});
         REQUIRE(writer.ok());
         REQUIRE(writer->append(random_layer(3, 50)).ok());
         auto other = random_layer(4, 50);
@@ -208,16 +208,16 @@ TEST_CASE("writer 5: the file is whole or as it was, and nothing else stays") {
         REQUIRE(!writer.ok());
         CHECK(writer.error().status == status);
     };
-    refused(where + "/no/such/folder/part.lyr", quantum, {}, ExitStatus::output);
-    refused(where, quantum, {}, ExitStatus::output);
+    refused(where + "/no/such/folder/part.lyr", micrometres, {}, ExitStatus::output);
+    refused(where, micrometres, {}, ExitStatus::output);
     refused(path, Quantum{0}, {}, ExitStatus::usage);
     refused(path, Quantum{1'000'001}, {}, ExitStatus::usage);
     Metadata metadata;
     metadata.source_name = std::string(70000, 'x');
-    refused(path, quantum, metadata, ExitStatus::usage);
+    refused(path, micrometres, metadata, ExitStatus::usage);
     metadata.source_name.clear();
     metadata.extra = {{"layers", "7"}};
-    refused(path, quantum, metadata, ExitStatus::usage);
+    refused(path, micrometres, metadata, ExitStatus::usage);
     CHECK(test::load(path) == before);
     CHECK(files_in(where) == 1);
 }
@@ -226,7 +226,7 @@ TEST_CASE("writer 6: a print that does not fit the memory set aside is the same"
           doctest::test_suite("long")) {
     // 30 layers of 1.5 MiB: the first ones go by the temporary file.
     const EncodedLayer layer = [] {
-        LayerEncoder encoder(quantum, test::RandomLayer::state(0.2));
+        LayerEncoder encoder(micrometres, test::RandomLayer::state(0.2));
         encoder.begin_path(timed_wall_style);
         for (int i = 0; i < 300000; ++i) encoder.travel_to(i % 2 ? 90 : -90, i % 3 ? 80 : -80.0);
         auto encoded = encoder.finish();
@@ -235,7 +235,7 @@ TEST_CASE("writer 6: a print that does not fit the memory set aside is the same"
     }();
     CHECK(layer.bytes.size() > std::size_t{3} << 19);
     const std::string path = test::scratch("large");
-    test::write_layers(path, quantum, {}, std::vector<EncodedLayer>(30, layer));
+    test::write_layers(path, micrometres, {}, std::vector<EncodedLayer>(30, layer));
     CHECK(std::filesystem::file_size(path) > std::size_t{40} << 20);
     auto reader = Reader::open(path);
     REQUIRE(reader.ok());
@@ -249,13 +249,13 @@ TEST_CASE("writer 6: a print that does not fit the memory set aside is the same"
 
 TEST_CASE("writer: a print without layers, and layers without operations") {
     const std::string path = test::scratch("empty");
-    test::write_layers(path, quantum, {}, {});
+    test::write_layers(path, micrometres, {}, {});
     CHECK(test::read_file(path).given.empty());
     CHECK(!test::read_file(path).error);
-    LayerEncoder layer(quantum, {});
+    LayerEncoder layer(micrometres, {});
     auto encoded = layer.finish();
     REQUIRE(encoded.ok());
-    test::write_layers(path, quantum, {}, {*encoded, *encoded});
+    test::write_layers(path, micrometres, {}, {*encoded, *encoded});
     const test::Reading reading = test::read_file(path);
     CHECK(!reading.error);
     CHECK(reading.given.size() == 2);
