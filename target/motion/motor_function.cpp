@@ -284,6 +284,7 @@ void MotorFunction::limit_jerk() {
         const Bounds own = smooth_[0].bounds(duration_s_);
         least_jerk_ = own.least_jerk;
         most_jerk_ = own.most_jerk;
+        most_snap_ = own.snap;
         return;
     }
     std::array<Bounds, 3> bounds;
@@ -291,6 +292,7 @@ void MotorFunction::limit_jerk() {
     const double lift = bed_ ? lift_jerk(bounds) : 0, above = tower_ ? jerk_over_head(bounds) : 0;
     most_jerk_ = std::abs(steps_per_mm_) * (bounds[axis_z].jerk() + lift + above);
     least_jerk_ = -most_jerk_;
+    most_snap_ = std::numeric_limits<double>::infinity();
 }
 
 // Of the root: g g' = q'/2, g g'' = q''/2 - g'^2, g g''' = q'''/2 - 3 g' g''.

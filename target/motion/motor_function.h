@@ -54,6 +54,8 @@ public:
     Sample at(double time_s) const;
     double least_jerk() const { return least_jerk_; }
     double most_jerk() const { return most_jerk_; }
+    // Of the fourth derivative; infinite where at() has no third.
+    double most_snap() const { return most_snap_; }
 
     // The first move that any cursor still needs.
     std::uint64_t oldest_move() const;
@@ -97,7 +99,7 @@ private:
     std::optional<MeshCell> cell_;
     double steps_per_mm_ = 1, start_ = 0;
     std::array<Smooth, 3> smooth_;
-    double duration_s_ = 0, least_jerk_ = 0, most_jerk_ = 0;
+    double duration_s_ = 0, least_jerk_ = 0, most_jerk_ = 0, most_snap_ = 0;
 };
 
 }  // namespace lyr::motion

@@ -39,15 +39,19 @@ double sum(const std::array<double, 9>& c, double q) {
 
 void Smooth::add(const Turn& turn, double time, Sample& sample) {
     const TurnAngle& a = turn.angle;
+    const double jerk = 6 * a.sixth_jerk;
     if (time == 0) {
+        const double acceleration = 2 * a.half_acceleration, squared = a.rate * a.rate;
         sample.speed += turn.ahead * a.rate;
-        sample.acceleration +=
-            turn.ahead * (2 * a.half_acceleration) + turn.inward * a.rate * a.rate;
+        sample.acceleration += turn.ahead * acceleration + turn.inward * squared;
+        sample.jerk +=
+            turn.ahead * (jerk - squared * a.rate) + turn.inward * 3 * a.rate * acceleration;
         return;
     }
     const double angle = time * (a.rate + time * (a.half_acceleration + time * a.sixth_jerk));
     const double rate = a.rate + time * (2 * a.half_acceleration + time * 3 * a.sixth_jerk);
-    const double acceleration = 2 * a.half_acceleration + 6 * a.sixth_jerk * time;
+    const double acceleration = 2 * a.half_acceleration + jerk * time;
+    const double squared = rate * rate;
     const double q = angle * angle;
     const double sine = angle * sum(sine_series, q);
     const double versine = q * sum(versine_series, q);
@@ -56,7 +60,8 @@ void Smooth::add(const Turn& turn, double time, Sample& sample) {
     const double across = turn.inward * cosine - turn.ahead * sine;
     sample.position += turn.ahead * sine + turn.inward * versine;
     sample.speed += along * rate;
-    sample.acceleration += along * acceleration + across * rate * rate;
+    sample.acceleration += along * acceleration + across * squared;
+    sample.jerk += along * (jerk - squared * rate) + across * 3 * rate * acceleration;
 }
 
 // Of an angle that does not turn back, the rate is largest at one of the ends, unless its acceleration
@@ -79,6 +84,8 @@ Bounds Smooth::bounds(double time) const {
         const double jerk = size * (rate * rate * rate + 3 * rate * acceleration + 6 * sixth);
         bounds.least_jerk -= jerk;
         bounds.most_jerk += jerk;
+        bounds.snap += size * (rate * rate * (rate * rate + 6 * acceleration) +
+                               3 * acceleration * acceleration + 24 * rate * sixth);
     }
     return bounds;
 }

@@ -2,8 +2,8 @@
 // machine's axis, or a sum of shifted copies of it, is while none of the copies changes its phase.
 //
 // Contract
-//  1. Within |angle| <= largest_turn_rad position, speed and acceleration are exact to rounding. Nothing
-//     is lost on arcs that are nearly straight: a turn is kept as its way from where it begins.
+//  1. Within |angle| <= largest_turn_rad position and derivatives are exact to rounding. Nothing is lost on arcs that are
+//     nearly straight: a turn is kept as its way from where it begins.
 //  2. leaves() is when the position first comes within `nearly` of one of two bounds it lies between, or the time given
 //     if that is earlier. It may be early (a position that creeps along a bound), never late.
 //  3. bounds() holds for all times from 0 to the one given, as long as no angle turns back.
@@ -17,13 +17,13 @@
 namespace lyr::motion {
 
 struct Sample {
-    double position = 0, speed = 0, acceleration = 0;
+    double position = 0, speed = 0, acceleration = 0, jerk = 0;
 };
 
-// The largest sizes of the derivatives, and between what the third one lies.
+// The largest sizes of the derivatives, snap being the fourth, and between what the third one lies.
 struct Bounds {
     double speed = 0, acceleration = 0;
-    double least_jerk = 0, most_jerk = 0;
+    double least_jerk = 0, most_jerk = 0, snap = 0;
 
     double jerk() const { return std::fmax(std::abs(least_jerk), std::abs(most_jerk)); }
 };
@@ -59,7 +59,8 @@ public:
 
     Sample at(double time) const {
         Sample sample{c_[0] + time * (c_[1] + time * (c_[2] + time * c_[3])),
-                      c_[1] + time * (2 * c_[2] + time * 3 * c_[3]), 2 * c_[2] + 6 * c_[3] * time};
+                      c_[1] + time * (2 * c_[2] + time * 3 * c_[3]), 2 * c_[2] + 6 * c_[3] * time,
+                      6 * c_[3]};
         for (std::size_t i = 0; i < turn_count_; ++i) add(turns_[i], time, sample);
         return sample;
     }

@@ -6,8 +6,10 @@
 //   turning point, which is looked for.
 // Otherwise it is halved. On a stretch that only rises or only falls each middle between two steps is
 // passed once. Its time is the root of the parabola through the last point looked at, off by less than
-// J t^3 / (6 speed); a new point is looked at where that is too much, so that a motion at even
-// acceleration needs none.
+// J t^3 / (6 speed); where that is too much, a step of Newton's from there to the root of the cubic, off by what that
+// step leaves and by S t^4 / (24 speed), S being a bound of the fourth derivative. Where that is too much as well, a new
+// point is looked at. All these bounds grow with t, so where they hold for one step they hold for those before it:
+// several are found together.
 //
 // Contract
 //  1. Times come in ascending order, within exact_s of the root of the function.
@@ -17,6 +19,7 @@
 
 #pragma once
 
+#include <array>
 #include <limits>
 
 #include "target/motion/motor_function.h"
@@ -60,18 +63,32 @@ private:
     double motor_at(double position) const;
     bool keeps_sign(const Sample& low, const Sample& high, double h) const;
     double turning_s(const MotorFunction& function, const Sample& high) const;
+    // The times of some steps from this middle on, or false: the next one has to be looked for alone.
+    bool find_ahead(const MotorFunction& function, double middle);
+    std::size_t exact_count(double middle, std::size_t most) const;
+    void fill(double middle, std::size_t count);
+    // How long after the point looked at last the motor is so many steps further.
+    struct Root {
+        double change_s;
+        bool is_exact;
+    };
+    Root root(double way) const;
     double solve_s(const MotorFunction& function, double middle);
 
     Play play_;
     double begin_ = 0;  // of the stretch, where play_.ahead is what it was
     std::int64_t count_ = 0;
-    double duration_s_ = 0, least_jerk_ = 0, most_jerk_ = 0, jerk_ = 0;
+    double duration_s_ = 0, least_jerk_ = 0, most_jerk_ = 0, jerk_ = 0, snap_ = 0;
     int direction_ = 0;                 // in the stretch; 0: stands still
     double low_s_ = 0, high_s_ = 0;     // of the stretch
     double end_ = 0;                    // its position there
     double seen_s_ = 0, passed_s_ = 0;  // of the last point looked at, of the last step
     Sample seen_, last_;                // there, and at the end of the piece
     Sample high_;
+    // Found ahead and not given yet, and how many to look for next time.
+    static constexpr std::size_t few_ahead = 4, most_ahead = 16;
+    std::array<double, most_ahead> found_s_;
+    std::size_t given_ = 0, found_ = 0, ahead_ = few_ahead;
 };
 
 }  // namespace lyr::motion

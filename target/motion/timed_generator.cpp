@@ -25,7 +25,7 @@ TimedGenerator::TimedGenerator(const Kinematics& kinematics, const Point& origin
     }
     for (Motor& motor : motors_) motor.begin = {-lead_ns_, 0};
     next_ns_.fill(-lead_ns_);
-    waits_.fill(true);
+    waiting_ = (1u << motor_count) - 1;
 }
 
 void TimedGenerator::start(const PlannedMove& planned) {
@@ -48,12 +48,13 @@ void TimedGenerator::finish() {
 
 void TimedGenerator::find_waiting() {
     for (std::size_t motor = 0; motor < motor_count; ++motor)
-        if (waits_[motor]) find(motor);
+        if ((waiting_ >> motor & 1) != 0) find(motor);
 }
 
 // The motor's next step, or how far it is known that there is none.
 void TimedGenerator::find(std::size_t index) {
     Motor& motor = motors_[index];
+    waiting_ &= static_cast<std::uint8_t>(~(1u << index));
     for (;;) {
         if (motor.state == Motor::State::walking) {
             const double time_s = motor.walk.next_s(motor.function);
@@ -62,7 +63,6 @@ void TimedGenerator::find(std::size_t index) {
                 next_ns_[index] =
                     motor.begin.ns +
                     static_cast<std::int64_t>(motor.begin.part_ns + time_s * 1e9 + to_nearest);
-                waits_[index] = false;
                 return;
             }
             motor.begin = motor.begin.after(motor.function.duration_s());
@@ -81,12 +81,11 @@ bool TimedGenerator::begin_piece(std::size_t index) {
         case Known::nothing_yet:
             motor.state = Motor::State::waiting;
             next_ns_[index] = motor.begin.ns;
-            waits_[index] = true;
+            waiting_ |= static_cast<std::uint8_t>(1u << index);
             return false;
         case Known::rests_forever:
             motor.state = Motor::State::done;
             next_ns_[index] = never_ns;
-            waits_[index] = false;
             return false;
     }
     return false;
@@ -105,16 +104,16 @@ std::size_t TimedGenerator::next(std::span<StepEvent> events) {
     std::size_t written = 0;
     while (written < events.size()) {
         const std::int64_t soonest_ns = *std::min_element(next_ns_.begin(), next_ns_.end());
-        if (soonest_ns == never_ns) break;
-        bool known = true;
+        unsigned due = 0;
         for (std::size_t motor = 0; motor < motor_count; ++motor)
-            known = known && !(next_ns_[motor] == soonest_ns && waits_[motor]);
-        if (!known) break;
+            due |= static_cast<unsigned>(next_ns_[motor] == soonest_ns) << motor;
+        if (soonest_ns == never_ns || (due & waiting_) != 0) break;
         // Rounding may put the first step of a piece before the last of the one before it.
         last_ns_ = std::max(last_ns_, soonest_ns + lead_ns_);
         StepEvent event{last_ns_};
+        // Four branches that are guessed are quicker than the bits of `due`, which are waited for.
         for (std::size_t motor = 0; motor < motor_count; ++motor)
-            if (next_ns_[motor] == soonest_ns && !waits_[motor]) take(motor, event);
+            if (next_ns_[motor] == soonest_ns) take(motor, event);
         events[written++] = event;
     }
     return written;

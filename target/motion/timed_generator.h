@@ -56,7 +56,7 @@ private:
 
     std::vector<Motor> motors_;
     std::array<std::int64_t, motor_count> next_ns_;  // of a motor's next step, in the plan's time
-    std::array<bool, motor_count> waits_{};          // nothing is known of it from then on
+    std::uint8_t waiting_ = 0;  // bit m: nothing is known of motor m from then on
     MoveWindow window_;
     std::int64_t lead_ns_ = 0, behind_ns_ = 0;
     StepCounts counts_{};

@@ -12,13 +12,15 @@ namespace {
 // Before the first step of an axis nothing of it has happened for a long time.
 constexpr std::int64_t long_ago_ns = -3'600'000'000'000;
 
+constexpr std::size_t edges_of_step = 3;
+
 }  // namespace
 
 PulseSchedule::PulseSchedule(const config::PulseTiming& timing, gpio::LineMask idle)
     : timing_(timing), idle_(idle), levels_(idle) {
     for (std::size_t i = 0; i < axes_.size(); ++i)
         axes_[i] = {long_ago_ns, long_ago_ns, (idle & direction_bit(i)) != 0};
-    open_.reserve(6 * config::axis_count);
+    open_.resize(2 * edges_of_step * config::axis_count);
 }
 
 void PulseSchedule::begin(std::int64_t delay_ns, std::vector<LineEvent>& events) {
@@ -36,23 +38,22 @@ void PulseSchedule::append(std::span<const Step> steps, std::vector<LineEvent>& 
     }
 }
 
+// What lies before the direction's edge is certain: no later step has any there.
 void PulseSchedule::step(const Step& step, std::vector<LineEvent>& events) {
+    make_room();
     AxisState& axis = axes_[step.axis];
     const std::int64_t wanted_ns = step.time_ns + shift_ns_;
     std::int64_t rise_ns = std::max(wanted_ns, axis.fall_ns + timing_.low_ns);
-    if (step.positive != axis.positive) {
-        const std::int64_t turn_ns = std::max(rise_ns - timing_.direction_setup_ns,
-                                              axis.rise_ns + timing_.direction_hold_ns);
-        rise_ns = std::max(rise_ns, turn_ns + timing_.direction_setup_ns);
-        insert(turn_ns, direction_bit(step.axis));
-        axis.positive = step.positive;
-    }
+    const bool turns = step.positive != axis.positive;
+    if (turns)
+        rise_ns = std::max(rise_ns,
+                           axis.rise_ns + timing_.direction_hold_ns + timing_.direction_setup_ns);
     delay(wanted_ns, rise_ns);
-    axis.rise_ns = rise_ns;
-    axis.fall_ns = rise_ns + timing_.high_ns;
+    emit_before(rise_ns - timing_.direction_setup_ns, events);
+    if (turns) insert(rise_ns - timing_.direction_setup_ns, direction_bit(step.axis));
+    axis = {rise_ns, rise_ns + timing_.high_ns, step.positive};
     insert(axis.rise_ns, step_bit(step.axis));
     insert(axis.fall_ns, step_bit(step.axis));
-    emit_before(rise_ns - timing_.direction_setup_ns, events);
 }
 
 void PulseSchedule::delay(std::int64_t wanted_ns, std::int64_t due_ns) {
@@ -69,6 +70,7 @@ std::int64_t PulseSchedule::quiet_ns(std::int64_t from_ns) const {
 }
 
 void PulseSchedule::mark(const Step& step, std::vector<LineEvent>& events) {
+    make_room();
     const std::int64_t wanted_ns = std::max<std::int64_t>(0, step.time_ns + shift_ns_);
     const bool is_gate = step.positive;
     std::int64_t time_ns = std::max(wanted_ns, last_mark_ns_ + 1);
@@ -80,28 +82,39 @@ void PulseSchedule::mark(const Step& step, std::vector<LineEvent>& events) {
     emit_before(time_ns - timing_.direction_setup_ns, events);
 }
 
-void PulseSchedule::insert(std::int64_t time_ns, gpio::LineMask toggled) {
-    auto place = open_.end();
-    while (place != open_.begin() && std::prev(place)->time_ns > time_ns) --place;
-    if (place != open_.begin() && std::prev(place)->time_ns == time_ns)
-        std::prev(place)->toggled ^= toggled;
-    else
-        open_.insert(place, {time_ns, toggled});
+void PulseSchedule::make_room() {
+    if (open_.size() - open_count_ < edges_of_step) open_.resize(2 * open_.size());
+}
+
+void PulseSchedule::insert_between(std::int64_t time_ns, gpio::LineMask toggled) {
+    std::size_t place = open_count_;
+    while (place > 0 && open_[place - 1].time_ns > time_ns) --place;
+    if (place > 0 && open_[place - 1].time_ns == time_ns) {
+        open_[place - 1].toggled ^= toggled;
+        return;
+    }
+    const auto from = open_.begin() + static_cast<std::ptrdiff_t>(place);
+    const auto end = open_.begin() + static_cast<std::ptrdiff_t>(open_count_++);
+    std::copy_backward(from, end, end + 1);
+    *from = {time_ns, toggled};
 }
 
 void PulseSchedule::emit_before(std::int64_t time_ns, std::vector<LineEvent>& events) {
-    auto edge = open_.begin();
-    for (; edge != open_.end() && edge->time_ns < time_ns; ++edge) {
-        levels_ ^= edge->toggled;
-        events.push_back({edge->time_ns, levels_});
+    gpio::LineMask levels = levels_;
+    std::size_t count = 0;
+    for (; count < open_count_ && open_[count].time_ns < time_ns; ++count) {
+        levels ^= open_[count].toggled;
+        events.push_back({open_[count].time_ns, levels});
     }
-    open_.erase(open_.begin(), edge);
+    levels_ = levels;
+    for (std::size_t i = count; i < open_count_; ++i) open_[i - count] = open_[i];
+    open_count_ -= count;
 }
 
 void PulseSchedule::finish(std::int64_t end_ns, std::vector<LineEvent>& events) {
     const std::int64_t last_ns = std::max(quiet_ns(end_ns + shift_ns_), last_mark_ns_ + 1);
     emit_before(last_ns, events);
-    open_.clear();
+    open_count_ = 0;
     levels_ &= all_mark_bits;
     events.push_back({last_ns, levels_});
 }
@@ -109,7 +122,7 @@ void PulseSchedule::finish(std::int64_t end_ns, std::vector<LineEvent>& events) 
 void PulseSchedule::finish_as_begun(std::vector<LineEvent>& events) {
     const std::int64_t last_ns = quiet_ns(0);
     emit_before(last_ns, events);
-    open_.clear();
+    open_count_ = 0;
     levels_ = idle_;
     events.push_back({last_ns, levels_});
     events.push_back({last_ns + timing_.direction_setup_ns, levels_});

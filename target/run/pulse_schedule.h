@@ -81,7 +81,15 @@ private:
     void delay(std::int64_t wanted_ns, std::int64_t due_ns);
     // When all edges of the steps so far are over and drivers have taken them.
     std::int64_t quiet_ns(std::int64_t from_ns) const;
-    void insert(std::int64_t time_ns, gpio::LineMask toggled);
+    void insert(std::int64_t time_ns, gpio::LineMask toggled) {
+        if (open_count_ == 0 || open_[open_count_ - 1].time_ns < time_ns)
+            open_[open_count_++] = {time_ns, toggled};
+        else
+            insert_between(time_ns, toggled);
+    }
+    void insert_between(std::int64_t time_ns, gpio::LineMask toggled);
+    // For the edges of a step or a mark.
+    void make_room();
     void emit_before(std::int64_t time_ns, std::vector<LineEvent>& events);
 
     config::PulseTiming timing_;
@@ -89,7 +97,8 @@ private:
     std::int64_t shift_ns_ = 0;
     std::int64_t last_mark_ns_ = -1;
     std::array<AxisState, config::axis_count> axes_;
-    std::vector<Edge> open_;  // in order of time; a few edges an axis at most
+    std::vector<Edge> open_;  // in order of time, the first so many; a few edges an axis at most
+    std::size_t open_count_ = 0;
     std::vector<Shift> shifts_;
 };
 

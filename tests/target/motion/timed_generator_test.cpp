@@ -12,7 +12,6 @@ namespace {
 
 using test::Errors;
 using test::errors_of;
-using test::exact_ns;
 using test::Job;
 using test::MotorStep;
 using test::moved_steps;
@@ -40,6 +39,9 @@ Job near_middle(unsigned seed, std::size_t count, double size_mm) {
     job.moves = test::random_moves(random, count, size_mm, job.origin, true);
     return job;
 }
+
+// Half a nanosecond of rounding, a tenth that a root may be off, and what is left for rounding of sums.
+constexpr Real exact_ns = 0.5 + 1e9 * TimeWalk::exact_s + 0.05;
 
 Real check_exact(const TimedRun& timed) {
     const std::vector<StepEvent>& events = timed.run.events;
