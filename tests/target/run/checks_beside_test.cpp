@@ -51,7 +51,8 @@ std::size_t feed(Checks& checks, const std::string& file, const config::Printer&
 
 }  // namespace
 
-TEST_CASE("checks beside 1, 2: on a thread of their own they say what they say here") {
+TEST_CASE("checks beside 1, 2: on a thread of their own they say what they say here" *
+          doctest::test_suite("long")) {
     const std::string file = long_print();
     config::Printer crossed = config::generic_printer();
     crossed.kinematics = config::Kinematics::corexy;

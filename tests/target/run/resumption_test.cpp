@@ -53,7 +53,8 @@ void write_entry(const config::Printer& printer, const std::string& file, std::u
 
 TEST_CASE(
     "resumption 1, 3: from any layer a print goes on as it would have, and ends where it would "
-    "have") {
+    "have" *
+    doctest::test_suite("long")) {
     const config::Printer printer = config::generic_printer();
     const std::string file = write_print(
         "resume", {draw_square, draw_arcs, draw_hatch, draw_climb, draw_circles, draw_wipes}, {},
