@@ -1,8 +1,8 @@
 # make            builds stepc, lyrrun, lyrctl and lyrview into build/ (installs missing Debian packages first)
 # make demo       slices the gearbox base, simulates the print, draws a layer and a page: all into demo/
 # make test       builds and runs every test, on this machine's processor
-# make test-emulated   those of what runs on a board, built for 64-bit and 32-bit ARM and run by qemu-user, but for programs
-#                 and the longest cases, into build-arm64/ and build-armhf/
+# make test-emulated   those of what runs on a board, built for 64-bit and 32-bit ARM and run by qemu-user, but for the
+#                 longest cases, into build-arm64/ and build-armhf/
 # make test-bits  a million random bits of a large print flipped, one at a time: both readers find each
 # make test-kernel     boots Debian's kernel in QEMU and prints there, on simulated lines: docs/kernel-test.md
 # make test-kernel-pi  the same on QEMU's Raspberry Pi 3, with lyrrun built for it
@@ -25,8 +25,8 @@ LYR_BENCH_FILES ?= fixtures/parts
 LYR_BENCH_SET   = --set perimeters.count=3 --set infill.density=15% --set infill.pattern=grid
 CTEST   = ctest --output-on-failure -j $(JOBS)
 
-.PHONY: all setup test-setup demo test test-bits test-kernel test-kernel-pi test-klipper sanitize tsan board cross test-emulated \
-        test-cross bench install clean
+.PHONY: all setup test-setup demo test test-bits test-kernel test-kernel-pi test-klipper sanitize tsan board cross \
+        test-emulated test-cross bench install clean
 
 all: setup
 	cmake -S . -B $(BUILD) -DCMAKE_BUILD_TYPE=Release
