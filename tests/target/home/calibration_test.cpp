@@ -201,7 +201,8 @@ TEST_CASE("calibration 1: a delta's frame, and then its bed is flat to a few mic
     CHECK(worst_mm < 0.01);
 }
 
-TEST_CASE("probing 1: noise is averaged, and more of it than the tolerance is an error") {
+TEST_CASE("probing 1: noise is averaged, and more of it than the tolerance is an error" *
+          doctest::test_suite("long")) {
     config::Printer printer = crooked();
     printer.mesh.points = {2, 2};
     printer.simulated.probe_noise_mm = 0.008;

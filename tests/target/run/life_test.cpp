@@ -85,8 +85,8 @@ TEST_CASE("life 1: a print that pauses at any time makes the same steps as one t
     }
 }
 
-TEST_CASE(
-    "life 1: so it is on crossed belts, on a delta, with shaping, jerk and pressure advance") {
+TEST_CASE("life 1: so it is on crossed belts, on a delta, with shaping, jerk and pressure advance" *
+          doctest::test_suite("long")) {
     config::Printer belts = parking_printer(), delta = parking_printer(),
                     shaped = parking_printer();
     belts.kinematics = config::Kinematics::corexy;
