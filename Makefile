@@ -1,6 +1,8 @@
 # make            builds stepc, lyrrun, lyrctl and lyrview into build/ (installs missing Debian packages first)
 # make demo       slices the gearbox base, simulates the print, draws a layer and a page: all into demo/
-# make test       builds and runs every test
+# make test       builds and runs every test, on this machine's processor
+# make test-emulated   those of what runs on a board, built for 64-bit and 32-bit ARM and run by qemu-user, but for the
+#                 longest cases, into build-arm64/ and build-armhf/
 # make test-bits  a million random bits of a large print flipped, one at a time: both readers find each
 # make test-kernel     boots Debian's kernel in QEMU and prints there, on simulated lines: docs/kernel-test.md
 # make test-kernel-pi  the same on QEMU's Raspberry Pi 3, with lyrrun built for it
@@ -10,7 +12,7 @@
 #                 --klipper); docs/exports.md
 # make board      only what a printer's board needs (lyrrun, lyrctl, lyrview), into build-board/
 # make cross      the same (lyrctl without its page) for 64-bit and 32-bit ARM boards with Debian 12 or later, into build-arm64/ and build-armhf/
-# make test-cross the tests of what runs on a board, built for both and run by qemu-user, but for the longest cases
+# make test-cross the same tests, and those of the file's checks, exports and imports
 # make bench      speed beside OpenCASCADE's and PrusaSlicer's, into build-bench/ (needs: tools/setup --bench);
 #                 LYR_BENCH_FILES=folder of STEP files to read
 # make install    into PREFIX (default /usr/local)
@@ -23,8 +25,8 @@ LYR_BENCH_FILES ?= fixtures/parts
 LYR_BENCH_SET   = --set perimeters.count=3 --set infill.density=15% --set infill.pattern=grid
 CTEST   = ctest --output-on-failure -j $(JOBS)
 
-.PHONY: all setup test-setup demo test test-bits test-kernel test-kernel-pi test-klipper sanitize tsan board cross test-cross \
-        bench install clean
+.PHONY: all setup test-setup demo test test-bits test-kernel test-kernel-pi test-klipper sanitize tsan board cross \
+        test-emulated test-cross bench install clean
 
 all: setup
 	cmake -S . -B $(BUILD) -DCMAKE_BUILD_TYPE=Release
@@ -97,6 +99,20 @@ cross: $(CROSS:%=cross-%)
 cross-%:
 	tools/cross $* build-$*
 	cmake --build build-$* -j $(JOBS) --target lyrrun lyrctl lyrview
+
+# Both at the same time, after what they are built with was fetched for one and then the other. A processor for which it
+# cannot be had is no failure, and is told last.
+test-emulated:
+	@ready=""; without=""; \
+	for arch in $(CROSS); do \
+	  if tools/setup --cross $$arch build-$$arch/sysroot; then ready="$$ready test-emulated-$$arch"; \
+	  else without="$$without $$arch"; fi; \
+	done; \
+	[ -z "$$ready" ] || $(MAKE) --no-print-directory -j $(JOBS) -O $$ready || exit 1; \
+	[ -z "$$without" ] || echo "test-emulated: NOT RUN, without a compiler or the board's libraries:$$without" >&2
+
+test-emulated-%:
+	tests/emulated/run $* build-$* $$((($(JOBS) + 1) / 2))
 
 test-cross: $(CROSS:%=test-cross-%)
 

@@ -87,7 +87,7 @@ function(lyr_room name)
 endfunction()
 
 # lyr_test(<name> SOURCES <file>... [ALONE <file>...] LINK <library>...): one doctest program for one room. What its
-# cases of the suite "long" look at, others look at in fewer places: an emulator leaves them out.
+# cases of the suite "long" look at, others look at in fewer places, or an emulator cannot: it leaves them out.
 function(lyr_test name)
   cmake_parse_arguments(TEST "" "" "SOURCES;ALONE;LINK" ${ARGN})
   add_executable(${name} ${TEST_SOURCES})

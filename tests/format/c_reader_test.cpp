@@ -116,7 +116,7 @@ TEST_CASE("C reader 3: blocks that are missing, doubled, swapped or of another t
     }
 }
 
-TEST_CASE("C reader 3 and 4: the same verdict on random operations") {
+TEST_CASE("C reader 3 and 4: the same verdict on random operations" * doctest::test_suite("long")) {
     test::with_random_operations([](const FileBytes& file) { REQUIRE(difference(file) == ""); });
 }
 

@@ -168,7 +168,7 @@ TEST_CASE("packed: walls as long as the history, and longer") {
     }
 }
 
-TEST_CASE("packed: runs go on from chunk to chunk") {
+TEST_CASE("packed: runs go on from chunk to chunk" * doctest::test_suite("long")) {
     const Way way{1000, 0.2, false, false};
     std::vector<Wall> walls;
     for (int i = 0; i < 150; ++i) walls.push_back(way.wall(0.4 * (i % 3)));

@@ -145,7 +145,8 @@ TEST_CASE("delta fit 1: with noise of 10 um the bed is flat to 20 um") {
     CHECK(radius_mm < 0.1);
 }
 
-TEST_CASE("calibration 1: a mesh is the bed at its points to a microstep of z") {
+TEST_CASE("calibration 1: a mesh is the bed at its points to a microstep of z" *
+          doctest::test_suite("long")) {
     const config::Printer printer = crooked();
     const auto found = calibrate({printer, true, {}}, Calibration::mesh);
     REQUIRE_MESSAGE(found.ok(), found.error().message);
@@ -173,7 +174,8 @@ TEST_CASE("calibration 1: the probe's height over a bed that an endstop knows") 
     CHECK(std::abs(found->printer.probe->offset_mm[2] - 1.37) <= 2 * 1.01 / 400);
 }
 
-TEST_CASE("calibration 1: a delta's frame, and then its bed is flat to a few micrometres") {
+TEST_CASE("calibration 1: a delta's frame, and then its bed is flat to a few micrometres" *
+          doctest::test_suite("long")) {
     config::Printer printer = with_probe(machine_of(Kinematics::delta));
     printer.simulated.radius_error_mm = {0.6, 0.6, 0.6};
     printer.simulated.angle_error_deg = {0.3, -0.2, 0};
@@ -191,7 +193,8 @@ TEST_CASE("calibration 1: a delta's frame, and then its bed is flat to a few mic
     CHECK(worst_mm < 0.01);
 }
 
-TEST_CASE("probing 1: noise is averaged, and more of it than the tolerance is an error") {
+TEST_CASE("probing 1: noise is averaged, and more of it than the tolerance is an error" *
+          doctest::test_suite("long")) {
     config::Printer printer = crooked();
     printer.mesh.points = {2, 2};
     printer.simulated.probe_noise_mm = 0.008;
@@ -203,7 +206,8 @@ TEST_CASE("probing 1: noise is averaged, and more of it than the tolerance is an
                   "and probe.tolerance_mm is 0.02");
 }
 
-TEST_CASE("probing 2: what breaks ends the calibration with the place and the reason") {
+TEST_CASE("probing 2: what breaks ends the calibration with the place and the reason" *
+          doctest::test_suite("long")) {
     const config::Printer printer = crooked();
     const auto broken = [&](double time_s, thermal::FaultKind kind) {
         return calibrate({printer, true, {fault(time_s, kind, config::contact_probe)}},

@@ -211,7 +211,8 @@ TEST_CASE("mover 5: a move that the planner refuses is refused before anything m
 
 TEST_CASE(
     "mover 5: a metre in small steps takes no more memory than the ring has, and has all its "
-    "edges") {
+    "edges" *
+    doctest::test_suite("long")) {
     const config::Printer printer = fine_machine();
     const std::vector<motion::Move> moves = along_x(printer, 1'000);
     const Edges all = all_edges(printer, moves);

@@ -71,7 +71,8 @@ TEST_CASE("limits 1: a line is as fast as its tightest axis allows") {
 }
 
 TEST_CASE(
-    "limits 1: on an arc no axis exceeds its limits in any direction swept, and one reaches it") {
+    "limits 1: on an arc no axis exceeds its limits in any direction swept, and one reaches it" *
+    doctest::test_suite("long")) {
     std::mt19937 random(4);
     std::uniform_real_distribution<double> share(0, 1);
     int at_limit = 0;

@@ -296,7 +296,8 @@ TEST_CASE("steps: turned by 90 degrees or mirrored, the times stay") {
     }
 }
 
-TEST_CASE("steps: a motor the other way round steps at the same times") {
+TEST_CASE("steps: a motor the other way round steps at the same times" *
+          doctest::test_suite("long")) {
     std::mt19937 random(8);
     Job job;
     job.moves = test::random_moves(random, 100, 5, job.origin, true);

@@ -77,7 +77,8 @@ TEST_CASE("timed 1, 2: a plain Cartesian machine steps as the step generator has
     }
 }
 
-TEST_CASE("timed 1, 2: crossed belts and a delta, on lines and arcs of all sizes") {
+TEST_CASE("timed 1, 2: crossed belts and a delta, on lines and arcs of all sizes" *
+          doctest::test_suite("long")) {
     Real worst_ns = 0;
     for (unsigned seed = 0; seed < 2; ++seed)
         for (const double size_mm : {0.02, 1.0, 12.0}) {

@@ -126,8 +126,8 @@ private:
 
 }  // namespace
 
-TEST_CASE(
-    "executor 8: from its first write on, the real-time thread of a print allocates nothing") {
+TEST_CASE("executor 8: from its first write on, the real-time thread of a print allocates nothing" *
+          doctest::test_suite("long")) {
     config::Printer printer = config::generic_printer();
     // Machines that run tests are late now and then.
     printer.pulse.late_limit_ns = 10'000'000'000;

@@ -51,7 +51,8 @@ std::size_t feed(Checks& checks, const std::string& file, const config::Printer&
 
 }  // namespace
 
-TEST_CASE("checks beside 1, 2: on a thread of their own they say what they say here") {
+TEST_CASE("checks beside 1, 2: on a thread of their own they say what they say here" *
+          doctest::test_suite("long")) {
     const std::string file = long_print();
     config::Printer crossed = config::generic_printer();
     crossed.kinematics = config::Kinematics::corexy;
@@ -76,7 +77,8 @@ TEST_CASE("checks beside 1, 2: on a thread of their own they say what they say h
         }
 }
 
-TEST_CASE("checks beside 3: what is not finished is left, and an error of the file is told") {
+TEST_CASE("checks beside 3: what is not finished is left, and an error of the file is told" *
+          doctest::test_suite("long")) {
     const std::string file = long_print();
     const config::Printer printer = config::generic_printer();
     FilePath path = path_of(file, printer);

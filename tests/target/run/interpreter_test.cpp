@@ -130,7 +130,8 @@ TEST_CASE(
     CHECK(per_mm_after / per_mm_before == doctest::Approx(area_mm2(0.6) / area_mm2(0.45)));
 }
 
-TEST_CASE("file path 2: the filament of very many motions adds up without drifting") {
+TEST_CASE("file path 2: the filament of very many motions adds up without drifting" *
+          doctest::test_suite("long")) {
     const Drawing zigzag = [](const Pen& pen) {
         pen.path();
         pen.travel(0, 0);

@@ -49,7 +49,8 @@ const std::string& cold_file() {
 
 }  // namespace
 
-TEST_CASE("life 1: a print that pauses at any time makes the same steps as one that does not") {
+TEST_CASE("life 1: a print that pauses at any time makes the same steps as one that does not" *
+          doctest::test_suite("long")) {
     const Result<SimulationReport> plain = simulated(cold_file(), "");
     REQUIRE_MESSAGE(plain.ok(), message_of(plain));
     const double print_s = plain->print_time_s;
@@ -66,8 +67,8 @@ TEST_CASE("life 1: a print that pauses at any time makes the same steps as one t
     }
 }
 
-TEST_CASE(
-    "life 1: so it is on crossed belts, on a delta, with shaping, jerk and pressure advance") {
+TEST_CASE("life 1: so it is on crossed belts, on a delta, with shaping, jerk and pressure advance" *
+          doctest::test_suite("long")) {
     config::Printer belts = parking_printer(), delta = parking_printer(),
                     shaped = parking_printer();
     belts.kinematics = config::Kinematics::corexy;
@@ -93,7 +94,8 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("life 1: pauses follow each other, and one may come while the head goes back") {
+TEST_CASE("life 1: pauses follow each other, and one may come while the head goes back" *
+          doctest::test_suite("long")) {
     const Result<SimulationReport> plain = simulated(cold_file(), "");
     REQUIRE(plain.ok());
     for (const char* script :
@@ -110,7 +112,8 @@ TEST_CASE("life 1: pauses follow each other, and one may come while the head goe
     }
 }
 
-TEST_CASE("life 1, 2: a change of filament leaves behind what it purges, and no step of the head") {
+TEST_CASE("life 1, 2: a change of filament leaves behind what it purges, and no step of the head" *
+          doctest::test_suite("long")) {
     const Result<SimulationReport> plain = simulated(cold_file(), "");
     REQUIRE(plain.ok());
     config::Printer printer = parking_printer();
@@ -229,7 +232,8 @@ TEST_CASE("life 4: an emergency stop ends at once, and the position is lost") {
     }
 }
 
-TEST_CASE("life 5: what cannot be done is refused, and the print goes on as before") {
+TEST_CASE("life 5: what cannot be done is refused, and the print goes on as before" *
+          doctest::test_suite("long")) {
     const Result<SimulationReport> plain = simulated(cold_file(), "");
     REQUIRE(plain.ok());
     const auto refusal = [&](const std::string& script, bool no_heat = true) {
@@ -288,7 +292,8 @@ TEST_CASE("executor 9: half the speed takes twice as long, and the path is the s
     CHECK(control.status().filament_mm > 0);
 }
 
-TEST_CASE("step stream: a higher speed is planned, a lower one after it comes by the pace") {
+TEST_CASE("step stream: a higher speed is planned, a lower one after it comes by the pace" *
+          doctest::test_suite("long")) {
     // Moves enough that not all of them are planned at once, on few steps.
     const auto to_and_fro = [](const Pen& pen) {
         pen.path();

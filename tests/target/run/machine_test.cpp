@@ -91,7 +91,8 @@ void check_end(const SimulationReport& report, const std::string& file) {
 
 }  // namespace
 
-TEST_CASE("machine: every kind of motion on crossed belts and on a delta, turned and mirrored") {
+TEST_CASE("machine: every kind of motion on crossed belts and on a delta, turned and mirrored" *
+          doctest::test_suite("long")) {
     for (const config::Printer& printer : {crossed(), delta(), with_jerk(delta())})
         for (const bool mirrored : {false, true})
             for (const double angle_rad : {0.0, 2.5}) {
@@ -106,7 +107,8 @@ TEST_CASE("machine: every kind of motion on crossed belts and on a delta, turned
             }
 }
 
-TEST_CASE("machine: shaped motions follow the shaped plan, and end where the file does") {
+TEST_CASE("machine: shaped motions follow the shaped plan, and end where the file does" *
+          doctest::test_suite("long")) {
     const std::string file = whole_print("shaped", {0.3, false, 20, 30});
     for (const config::Printer& plain : {config::generic_printer(), crossed(), delta()})
         for (const config::Printer& printer :
@@ -133,7 +135,8 @@ TEST_CASE("machine: axes with backlash follow the file, a fifth of it late after
     }
 }
 
-TEST_CASE("machine check 1, 3: a step left out, doubled, late or of another motor is found") {
+TEST_CASE("machine check 1, 3: a step left out, doubled, late or of another motor is found" *
+          doctest::test_suite("long")) {
     const std::string file = whole_print("mutated", {0.3, false, 20, 30});
     std::mt19937 random(5);
     for (const config::Printer& printer : {crossed(), shaped(delta())})

@@ -121,7 +121,7 @@ TEST_CASE("path check 1: perfect steps deviate by half a step, on lines and arcs
     CHECK(deviation.distance_mm < std::hypot(0.51 / 80, 0.51 / 100, 0.51 / 400));
 }
 
-TEST_CASE("path check 1: so do mirrored and reversed tours") {
+TEST_CASE("path check 1: so do mirrored and reversed tours" * doctest::test_suite("long")) {
     for (const double mirror_x : {1.0, -1.0})
         for (const double mirror_y : {1.0, -1.0}) {
             std::vector<PathCurve> curves = tour();
@@ -264,7 +264,8 @@ TEST_CASE("path check 1: a step that is almost due is measured where it is due")
 
 TEST_CASE(
     "path check 3: a step on an arc is not lost where another axis, of the same nanosecond, goes "
-    "first") {
+    "first" *
+    doctest::test_suite("long")) {
     // y is past its middle by `behind` steps where x passes its own, and both come in one write, x first.
     for (const double behind : {0.0, 1e-8, 1e-7, 9e-7, 1.1e-6, 2e-5})
         for (const double sign_x : {1.0, -1.0})
@@ -350,7 +351,8 @@ std::vector<PathCurve> tour_on_middles(std::uint32_t seed) {
 
 }  // namespace
 
-TEST_CASE("path check 3: lines along middles and arcs that touch them are followed either way") {
+TEST_CASE("path check 3: lines along middles and arcs that touch them are followed either way" *
+          doctest::test_suite("long")) {
     for (std::uint32_t seed = 1; seed <= 15; ++seed) {
         CAPTURE(seed);
         const std::vector<PathCurve> curves = tour_on_middles(seed);
@@ -358,7 +360,8 @@ TEST_CASE("path check 3: lines along middles and arcs that touch them are follow
     }
 }
 
-TEST_CASE("path check 2: among lines along middles and touches wrong steps are still found") {
+TEST_CASE("path check 2: among lines along middles and touches wrong steps are still found" *
+          doctest::test_suite("long")) {
     std::mt19937 random(7);
     for (std::uint32_t seed = 1; seed <= 15; ++seed) {
         const std::vector<PathCurve> curves = tour_on_middles(seed);

@@ -71,7 +71,8 @@ TEST_CASE("plan check 1: steps that are all late by a known shift are not off") 
     CHECK(worst(all.moves, late) > 5);
 }
 
-TEST_CASE("plan check 2: steps that are late, missing, doubled or turned round are found") {
+TEST_CASE("plan check 2: steps that are late, missing, doubled or turned round are found" *
+          doctest::test_suite("long")) {
     const Planned all = planned(write_print("plan", drawings));
     std::mt19937 random(8);
     for (int trial = 0; trial < 40; ++trial) {

@@ -91,7 +91,8 @@ std::vector<std::int64_t> times_of(const PlanPieces& pieces) {
 
 }  // namespace
 
-TEST_CASE("plan copy 1, 2: as found by searching the plan, for times in any order") {
+TEST_CASE("plan copy 1, 2: as found by searching the plan, for times in any order" *
+          doctest::test_suite("long")) {
     constexpr double rounding_mm = 1e-10, weight = -0.7;
     constexpr std::int64_t offset_ns = -12'345'678;
     for (const double jerk_mm_s3 : {0.0, 2e5}) {
@@ -130,7 +131,8 @@ TEST_CASE("plan copy 1: a plan that goes on is seen to, however it was asked bef
     }
 }
 
-TEST_CASE("plan copy 2: a sum is that of its terms, for times near each other and in any order") {
+TEST_CASE("plan copy 2: a sum is that of its terms, for times near each other and in any order" *
+          doctest::test_suite("long")) {
     struct Term {
         double weight;
         std::int64_t offset_ns;

@@ -43,7 +43,8 @@ void write_entry(const config::Printer& printer, const std::string& file, std::u
 
 TEST_CASE(
     "resumption 1, 3: from any layer a print goes on as it would have, and ends where it would "
-    "have") {
+    "have" *
+    doctest::test_suite("long")) {
     const config::Printer printer = config::generic_printer();
     const std::string file = write_print(
         "resume", {draw_square, draw_arcs, draw_hatch, draw_climb, draw_circles, draw_wipes}, {},
@@ -257,7 +258,9 @@ TEST_CASE(
     CHECK_FALSE(std::filesystem::exists(journal));
 }
 
-TEST_CASE("print 7: a journal that cannot be written is a warning, and the print is made") {
+// The lock on /dev/full is one for the machine: emulated tests of two processors would keep it from each other.
+TEST_CASE("print 7: a journal that cannot be written is a warning, and the print is made" *
+          doctest::test_suite("long")) {
     const config::Printer printer = nearby_printer();
     const std::string file = write_print("no_journal", {draw_small});
     gpio::MonotonicClock clock;

@@ -145,7 +145,8 @@ gpio::MockChip::Fault failing_at(std::uint64_t number) {
 
 }  // namespace
 
-TEST_CASE("safety: a signal, once or twice, at every hour of a print") {
+TEST_CASE("safety: a signal, once or twice, at every hour of a print" *
+          doctest::test_suite("long")) {
     for (const Hour& hour : hours())
         for (const int count : {1, 2}) {
             CAPTURE(hour.name);
@@ -168,7 +169,7 @@ TEST_CASE("safety: an emergency stop at every hour of a print") {
     }
 }
 
-TEST_CASE("safety: a cancel at every hour of a print") {
+TEST_CASE("safety: a cancel at every hour of a print" * doctest::test_suite("long")) {
     for (const Hour& hour : hours()) {
         CAPTURE(hour.name);
         const End end = end_of(job_of(), pause_script() + at(hour.time_s, "cancel"));
@@ -177,7 +178,7 @@ TEST_CASE("safety: a cancel at every hour of a print") {
     }
 }
 
-TEST_CASE("safety: a sensor that breaks at every hour of a print") {
+TEST_CASE("safety: a sensor that breaks at every hour of a print" * doctest::test_suite("long")) {
     for (const Hour& hour : hours())
         for (const char* fault : {"open tool", "short bed", "unreadable tool", "jump bed 60"}) {
             CAPTURE(hour.name);
@@ -248,7 +249,8 @@ TEST_CASE("safety: a heater's line that cannot be written, at the first, any and
     }
 }
 
-TEST_CASE("safety: a file that is cut or changed while it is printed") {
+TEST_CASE("safety: a file that is cut or changed while it is printed" *
+          doctest::test_suite("long")) {
     const std::vector<Drawing> drawings(45, [](const Pen& pen) {
         pen.path(200);
         pen.travel(0, 0);

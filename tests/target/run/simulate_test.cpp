@@ -75,8 +75,8 @@ config::Printer fine_printer() {
 
 }  // namespace
 
-TEST_CASE(
-    "simulate 2, 3: every kind of motion stays within half a microstep, turned and mirrored") {
+TEST_CASE("simulate 2, 3: every kind of motion stays within half a microstep, turned and mirrored" *
+          doctest::test_suite("long")) {
     int number = 0;
     for (const Case& what : all_cases())
         for (const bool mirrored : {false, true})
@@ -94,7 +94,8 @@ TEST_CASE(
             }
 }
 
-TEST_CASE("simulate 2, 3: on coarse and fine machines, and from another start") {
+TEST_CASE("simulate 2, 3: on coarse and fine machines, and from another start" *
+          doctest::test_suite("long")) {
     std::vector<Drawing> drawings;
     for (const Case& what : all_cases()) drawings.push_back(what.drawing);
     const std::string file = write_print("machines", drawings);
@@ -129,7 +130,8 @@ TEST_CASE("simulate: the report's figures are those of the drawing") {
     CHECK(text_of(report).find("within half a microstep everywhere") != std::string::npos);
 }
 
-TEST_CASE("simulate 4: the wave decodes to the same positions, with the driver's times kept") {
+TEST_CASE("simulate 4: the wave decodes to the same positions, with the driver's times kept" *
+          doctest::test_suite("long")) {
     std::vector<Drawing> drawings;
     for (const Case& what : all_cases()) drawings.push_back(what.drawing);
     const std::string file = write_print("trace", drawings);

@@ -52,7 +52,8 @@ TEST_CASE("life 3: in a long pause the tool goes cold, and the bed holds on to t
     CHECK(tool_cold);
 }
 
-TEST_CASE("heat order 3: a pause with heaters on standby is no waiting for heat") {
+TEST_CASE("heat order 3: a pause with heaters on standby is no waiting for heat" *
+          doctest::test_suite("long")) {
     // It goes cold before the print has had the heat that it waits for.
     config::Printer printer = config::generic_printer();
     printer.pause.tool_off_s = 30;

@@ -65,7 +65,8 @@ std::vector<LineEvent> read(const std::string& file, const config::Printer& prin
 
 }  // namespace
 
-TEST_CASE("stream beside 1: portions are those of the stream, and bring the same along") {
+TEST_CASE("stream beside 1: portions are those of the stream, and bring the same along" *
+          doctest::test_suite("long")) {
     const std::string file = print_of_teeth();
     config::Printer crossed = config::generic_printer();
     crossed.kinematics = config::Kinematics::corexy;
@@ -100,7 +101,8 @@ TEST_CASE("stream beside 1: portions are those of the stream, and bring the same
 }
 
 TEST_CASE(
-    "stream beside 2: a change of speed shows at the same event, whichever thread is quicker") {
+    "stream beside 2: a change of speed shows at the same event, whichever thread is quicker" *
+    doctest::test_suite("long")) {
     const std::string file = print_of_teeth();
     const config::Printer printer = config::generic_printer();
     const std::vector<LineEvent> plain = read(file, printer, half_second_ns, 5, 1, false);

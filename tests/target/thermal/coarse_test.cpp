@@ -150,7 +150,8 @@ TEST_CASE("guard 7: a converter of 10 bits at a steady temperature was taken for
     });
 }
 
-TEST_CASE("guard 7: whatever the sensor, one that freezes is found in time, and before it is hot") {
+TEST_CASE("guard 7: whatever the sensor, one that freezes is found in time, and before it is hot" *
+          doctest::test_suite("long")) {
     for_each_case([](Rig& rig, const Case& heated) {
         const double frozen_time_s = config::default_heater(heated.heater).guard.frozen_time_s;
         rig.freeze();

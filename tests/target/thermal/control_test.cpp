@@ -35,7 +35,8 @@ Course course(SimulatedHeat& heat, std::size_t heater, double until_s) {
 
 }  // namespace
 
-TEST_CASE("control: heaters reach their targets, overshoot little and hold them") {
+TEST_CASE("control: heaters reach their targets, overshoot little and hold them" *
+          doctest::test_suite("long")) {
     const config::Printer printer = heated_printer();
     for (const Targets& targets :
          {Targets{210, 60, 0}, Targets{250, 110, 50}, Targets{180, 40, 30}}) {
