@@ -30,6 +30,11 @@ HeatNow HeatDesk::now() const {
     return now_;
 }
 
+bool HeatDesk::has_seen() const {
+    const std::lock_guard lock(mutex_);
+    return seen_ == asked_;
+}
+
 bool HeatDesk::settled() const {
     const std::lock_guard lock(mutex_);
     return seen_ == asked_ && now_.reached;

@@ -6,7 +6,8 @@
 //     set holds until the next one, be it asked for here or by the path.
 //  2. A heater on standby gets no power and keeps the target that it will have again; while one is, no order of the path
 //     is carried out.
-//  3. settled(): all that was asked has been carried out since, and every heater has reached its target or is warmer.
+//  3. has_seen(): all that was asked has been carried out, and now() is after that; settled(): and every heater has
+//     reached its target or is warmer.
 
 #pragma once
 
@@ -49,6 +50,7 @@ public:
     // Of the path: it goes on.
     void end_pause();
     HeatNow now() const;
+    bool has_seen() const;
     bool settled() const;
 
     // For the attendant.

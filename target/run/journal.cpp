@@ -267,6 +267,11 @@ bool JournalWriter::is_idle() {
     return !waiting_ && !is_writing_;
 }
 
+bool JournalWriter::has_failed() {
+    const std::lock_guard lock(mutex_);
+    return has_failed_;
+}
+
 std::optional<Diagnostic> JournalWriter::take_error() {
     const std::lock_guard lock(mutex_);
     return std::exchange(error_, std::nullopt);
@@ -284,8 +289,8 @@ void JournalWriter::work() {
         const Status written = journal_.write(entry);
         lock.lock();
         is_writing_ = false;
-        if (!written && !has_failed_) error_ = written.error();
-        has_failed_ = has_failed_ || !written;
+        has_failed_ = !written;
+        if (has_failed_ && !std::exchange(has_told_, true)) error_ = written.error();
     }
 }
 

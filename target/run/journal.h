@@ -90,6 +90,8 @@ public:
     void post(const JournalEntry& entry);
     // All that was posted is on the disk, or could not be written.
     bool is_idle();
+    // What was posted last could not.
+    bool has_failed();
     std::optional<Diagnostic> take_error();
     // At once and for good: neither what waits nor what is posted later is written.
     void remove();
@@ -104,7 +106,8 @@ private:
     std::condition_variable changed_;
     std::optional<JournalEntry> waiting_;
     std::optional<Diagnostic> error_;
-    bool is_writing_ = false, has_failed_ = false, ends_ = false, removes_ = false;
+    bool is_writing_ = false, has_failed_ = false, has_told_ = false, ends_ = false,
+         removes_ = false;
     std::thread thread_;
 };
 

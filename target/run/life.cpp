@@ -88,10 +88,12 @@ void Life::serve(const Command& command) {
     if (const auto why = objection(command, printer_)) return refuse(command, *why);
     if (std::holds_alternative<EmergencyStop>(command)) {
         if (cut) cut();
-        phase_ = Phase::over;
         ended_by_ =
-            "emergency stop: steps and heaters are off, and the position of the head is lost; "
+            "emergency stop: steps and heaters are off, and the position of the head is lost; " +
+            std::string(journal_ && rest_nm() ? "leave z where it is to go on with --resume, or "
+                                              : "") +
             "home the printer before the next print";
+        phase_ = Phase::over;
     } else if (std::holds_alternative<Resume>(command)) {
         resume();
     } else if (const auto* set = std::get_if<SetTemperature>(&command)) {
@@ -165,8 +167,11 @@ void Life::unload() {
         message_ = "filament is changed once the path has begun; the print rests";
         return;
     }
+    is_to_unload_ = !desk_.has_seen();
+    if (is_to_unload_) return;
     if (!keeps_warm()) {
         message_ = "the tool is too cold to move filament: heat it, or change it by hand";
+        if (hear_of_refusal) hear_of_refusal(message_);
         return;
     }
     const Leg leg{parked_at_, -printer_.filament.unload_mm, printer_.filament.speed_mm_s};
@@ -227,6 +232,7 @@ void Life::resume() {
             formatted("the tool was set to %g °C, and filament is pushed from %g °C on",
                       *cold_by_hand_c_, printer_.heaters[config::heater_tool]->min_extrude_c));
     message_.clear();
+    is_to_unload_ = false;
     standby_.fill(false);
     desk_.set_standby(standby_);
     reason_ = Pause{};
@@ -265,7 +271,15 @@ void Life::heated() {
 
 // The journal's thread tells what it has written a tick later at the earliest.
 bool Life::may_leave() {
-    return !journal_ || (std::exchange(departs_, true) && journal_->is_idle());
+    if (!journal_) return true;
+    if (!std::exchange(departs_, true) || !journal_->is_idle()) return false;
+    if (!journal_->has_failed() || std::exchange(leaves_unnoted_, true)) return true;
+    hear_of_journal();
+    message_ =
+        "the journal cannot be written and says for ever that the head is here: resume once more "
+        "to go on, and after that do not go on with --resume";
+    rest_here();
+    return false;
 }
 
 void Life::set_temperature(const SetTemperature& set) {
@@ -277,7 +291,7 @@ void Life::set_temperature(const SetTemperature& set) {
             set, formatted("filament is pushed from %g °C on; pause first", heater.min_extrude_c));
     if (is_tool) cold_by_hand_c_ = is_cold ? std::optional(set.target_c) : std::nullopt;
     desk_.set_target(set.heater, set.target_c);
-    idle_since_s_[set.heater] = now_s_;
+    idle_since_s_[set.heater] = now_s_ + std::max(0.0, least_held_s - off_after_s(set.heater));
 }
 
 void Life::advance() {
@@ -379,15 +393,20 @@ void Life::parked() {
 
 void Life::rest() {
     if (cancels()) return parked();
-    let_cool();
+    if (std::exchange(is_to_unload_, false)) unload();
+    if (phase_ == Phase::resting && !is_to_unload_) let_cool();
+}
+
+double Life::off_after_s(std::size_t heater) const {
+    return heater == config::heater_tool ? printer_.pause.tool_off_s : printer_.pause.bed_off_s;
 }
 
 void Life::let_cool() {
     std::array<bool, config::heater_count> standby{};
     for (std::size_t i = 0; i < standby.size(); ++i)
-        standby[i] =
-            now_s_ - idle_since_s_[i] >=
-            (i == config::heater_tool ? printer_.pause.tool_off_s : printer_.pause.bed_off_s);
+        standby[i] = now_s_ - idle_since_s_[i] >= off_after_s(i);
+    if (phase_ == Phase::braking && changes_filament() && !is_unloaded_)
+        standby[config::heater_tool] = false;
     if (standby == standby_) return;
     standby_ = standby;
     desk_.set_standby(standby_);

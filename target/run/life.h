@@ -15,7 +15,7 @@
 //     was set to less in a pause must be set to more before it. Heat that has not come within an hour is taken away,
 //     and the print rests on.
 //  3. A pause that lasts for longer than printer.toml says lets tool, bed and chamber go cold; one whose temperature
-//     is set then is warm for as long again.
+//     is set then is warm for as long again, and for least_held_s. A tool that filament is to be drawn out of stays warm.
 //  4. A cancel takes all heat away once no filament is under way, parks too, and ends by a request to stop; an
 //     emergency stop does so at once, and calls `cut`. At the end of the path the head parks as for a pause, at the
 //     heat that the file left; commands come too late then.
@@ -25,8 +25,9 @@
 //     once a second where it is in the layer, and how high it came to rest when it was stopped; and of the filament,
 //     how far it is drawn back while the head is away from the path or was stopped, and whether it was drawn out. A
 //     journal that cannot be written is told, and is no reason to stop. Before the head leaves the place where it
-//     rests, the journal has on the disk that it does: it never says a height that the head may have gone below. At
-//     the end of the path there is nothing to resume any more, and it goes.
+//     rests, the journal has on the disk that it does: it never says a height that the head may have gone below; where
+//     that cannot be written, the print rests on, and goes on when it is resumed once more. At the end of the path
+//     there is nothing to resume any more, and it goes.
 //  8. A print that resumes after it was cut off begins with heat, then the head is lifted, unless that was done. If the
 //     filament was drawn out it rests then for the next one, which is pushed in before the path begins.
 
@@ -56,6 +57,9 @@ struct LifeOf {
 
 class Life {
 public:
+    // So long a temperature that is set in a rest holds at least.
+    static constexpr double least_held_s = 300;
+
     // All but `print` must outlive it.
     Life(const config::Printer& printer, PrintControl& control, Course& course, LayerLog& layers,
          HeatDesk& desk, LifeOf print);
@@ -117,6 +121,7 @@ private:
     void rest();
     void go_back();
     void let_cool();
+    double off_after_s(std::size_t heater) const;
     void brake(bool rests);
     bool leave();
     void lift();
@@ -188,6 +193,8 @@ private:
     bool heeds_file_ = false;       // rests since the path waits in a pause of its own
     bool resumes_ = false;          // a print that was cut off
     bool departs_ = false;          // from its height: that is noted no more
+    bool leaves_unnoted_ = false;   // as the user has asked for twice
+    bool is_to_unload_ = false;     // once it is known how warm the tool is
     std::array<bool, config::heater_count> standby_{};
     std::optional<double>
         cold_by_hand_c_;  // what the tool was set to in a rest, if no filament can be pushed then

@@ -286,6 +286,8 @@ TEST_CASE("life 7: an emergency stop in a rest threw the height away that the jo
         begin_path(print);
         if (!is_on_path) pause_path(print);
         print.after(6, EmergencyStop{});
+        // Homing would spoil that height.
+        CHECK((print.life.ended_by()->find("--resume") == std::string::npos) == is_on_path);
         const JournalEntry noted = print.noted();
         CHECK(noted.rest_nm == (is_on_path ? std::nullopt : std::optional(16'500'000)));
         if (!is_on_path) CHECK(noted.drawn_back_um == 2'000);
