@@ -21,7 +21,7 @@ constexpr std::uint32_t polynomial = 0x82f63b78u;
 
 using Table = std::array<std::uint32_t, 256>;
 
-constexpr std::array<Table, 8> make_tables() {
+std::array<Table, 8> make_tables() {
     std::array<Table, 8> tables{};
     for (std::uint32_t byte = 0; byte < 256; ++byte) {
         std::uint32_t crc = byte;
@@ -37,7 +37,11 @@ constexpr std::array<Table, 8> make_tables() {
     return tables;
 }
 
-constexpr std::array<Table, 8> tables = make_tables();
+// Made when they are first asked for: 8 KB that a program need not carry.
+const std::array<Table, 8>& all_tables() {
+    static const std::array<Table, 8> tables = make_tables();
+    return tables;
+}
 
 #ifdef __x86_64__
 bool has_instruction() {
@@ -77,6 +81,7 @@ std::uint32_t by_instruction(std::span<const std::byte>, std::uint32_t crc) {
 }  // namespace
 
 std::uint32_t crc32c_by_tables(std::span<const std::byte> bytes, std::uint32_t before) {
+    const std::array<Table, 8>& tables = all_tables();
     std::uint32_t crc = ~before;
     const std::byte* at = bytes.data();
     std::size_t left = bytes.size();
