@@ -11,6 +11,7 @@
 #include "kernel/freeform_solids.h"
 #include "kernel/section/flatness.h"
 #include "kernel/solids.h"
+#include "slicer/scene.h"
 
 using namespace lyr;
 using namespace lyr::slicer;
@@ -43,10 +44,6 @@ Planned planned(const Model& model, const Options& options) {
     Planned result{transformed(model, down), range.top_mm - range.bottom_mm, {}, {}};
     result.plan = adaptive_plan(result.model, result.height_mm, options, result.diagnostics);
     return result;
-}
-
-Model turned(const Model& model, double angle_rad, const Vector3& axis) {
-    return transformed(model, Eigen::Affine3d(Eigen::AngleAxisd(angle_rad, axis.normalized())));
 }
 
 Model mirrored(const Model& model) {

@@ -7,14 +7,14 @@
 #include <numbers>
 
 #include "kernel/toolpath/boundary.h"
+#include "slicer/scene.h"
 
 using namespace lyr;
 using namespace lyr::slicer;
+using lyr::testing::span;
 using Kind = Imbalance::Kind;
 
 namespace {
-
-constexpr LayerSpan span{0.2, 0.4};
 
 Contour polygon(const std::vector<Point2>& corners, double turn_rad) {
     const Eigen::Rotation2Dd turn(turn_rad);
@@ -29,7 +29,7 @@ Contour square(double half_mm, double turn_rad) {
         turn_rad);
 }
 
-OutlinedLayer walled(std::vector<Contour> outline) {
+OutlinedLayer walled_with_figures(std::vector<Contour> outline) {
     OutlinedLayer layer{.outline = std::move(outline)};
     add_walls(layer, span, {});
     layer.printed = figures_of(layer.outline);
@@ -75,7 +75,7 @@ TEST_CASE(
     "for") {
     for (const double turn : {0.0, 0.3, 1.7}) {
         CAPTURE(turn);
-        const OutlinedLayer layer = walled(with_hole(turn));
+        const OutlinedLayer layer = walled_with_figures(with_hole(turn));
         REQUIRE(layer.walls.strands.size() == 6);
         CHECK(!found(layer, sparse_within(layer)));
         // Of the solid inside: one strand as wide as it, but for what flanks of lines share.
@@ -96,7 +96,7 @@ TEST_CASE(
 
 TEST_CASE("balance 2: any wall that is lost or laid twice is told, with how much and where") {
     for (const double turn : {0.0, 0.3, 1.7}) {
-        const OutlinedLayer good = walled(with_hole(turn));
+        const OutlinedLayer good = walled_with_figures(with_hole(turn));
         for (std::size_t i = 0; i < good.walls.strands.size(); ++i) {
             CAPTURE(turn);
             CAPTURE(i);
@@ -124,7 +124,7 @@ TEST_CASE("balance 2: any wall that is lost or laid twice is told, with how much
 }
 
 TEST_CASE("balance 3: without gap fill nothing is missing") {
-    const OutlinedLayer good = walled(with_hole(0.3));
+    const OutlinedLayer good = walled_with_figures(with_hole(0.3));
     profile::Profile profile;
     CHECK(found(without_a_wall(good), sparse_within(good), profile));
     profile.perimeters.gap_fill = false;
@@ -132,7 +132,7 @@ TEST_CASE("balance 3: without gap fill nothing is missing") {
 }
 
 TEST_CASE("balance 1: what is told as too thin is not told again, nor what no layer has") {
-    const OutlinedLayer good = walled(with_hole(0));
+    const OutlinedLayer good = walled_with_figures(with_hole(0));
     OutlinedLayer bad = without_a_wall(good);
     LayerFill fill = sparse_within(good);
     const auto missing = found(bad, fill);
@@ -189,7 +189,7 @@ TEST_CASE(
     for (const double turn : {0.0, 0.3, 1.7}) {
         CAPTURE(turn);
         // One wall around, one within it.
-        const OutlinedLayer good = walled({square(0.86, turn)});
+        const OutlinedLayer good = walled_with_figures({square(0.86, turn)});
         REQUIRE(good.walls.strands.size() == 2);
         CHECK(!found(good, {}));
         const auto less = found(without_a_wall(good), {});

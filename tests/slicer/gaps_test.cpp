@@ -7,6 +7,7 @@
 #include "kernel/toolpath/fills.h"
 #include "slicer/balance.h"
 #include "slicer/fill.h"
+#include "slicer/scene.h"
 
 using namespace lyr;
 using namespace lyr::slicer;
@@ -14,17 +15,15 @@ using namespace lyr::testing;
 
 namespace {
 
-const Motion motions[] = {{}, {0.3, {1, 2}}, {2.1, {-40, 7}, true}, {pi / 4, {0, 0}}};
+const Motion part_motions[] = {{}, {0.3, {1, 2}}, {2.1, {-40, 7}, true}, {pi / 4, {0, 0}}};
 
-constexpr LayerSpan span{0.2, 0.4};
-
-struct PrintedLayer {
+struct FilledLayer {
     OutlinedLayer layer;
     LayerFill fill;
 };
 
-PrintedLayer printed(const Contours& outline, const Options& options) {
-    PrintedLayer print{.layer = {.outline = outline}, .fill = {}};
+FilledLayer printed(const Contours& outline, const Options& options) {
+    FilledLayer print{.layer = {.outline = outline}, .fill = {}};
     add_walls(print.layer, span, options);
     const LayerSpan spans[] = {span};
     std::vector<SkinOutline> outlines;
@@ -35,7 +34,7 @@ PrintedLayer printed(const Contours& outline, const Options& options) {
     return print;
 }
 
-PrintedLayer printed_solid(const Contours& outline) {
+FilledLayer printed_solid(const Contours& outline) {
     Options options;
     options.profile.infill.density = 1;
     return printed(outline, options);
@@ -43,7 +42,7 @@ PrintedLayer printed_solid(const Contours& outline) {
 
 // Calls take(strand, flow): of runs, for each row and link.
 template <class Take>
-void for_strands(const PrintedLayer& print, Take take) {
+void for_strands(const FilledLayer& print, Take take) {
     for (const Strand& wall : print.layer.walls.strands) take(wall, 1);
     for (const Piece& piece : print.fill.pieces) {
         if (const auto* strand = std::get_if<Strand>(&piece.way)) {
@@ -68,7 +67,7 @@ void for_lines(const Strand& strand, Take take) {
 }
 
 // Of a region's area, in lines 20 um apart.
-double covered_share_of(const PrintedLayer& print, const Contours& region) {
+double covered_share_of(const FilledLayer& print, const Contours& region) {
     constexpr double line_mm = 0.02, chord_mm = 0.1;
     std::map<long, Intervals> rows;
     for_strands(print, [&](const Strand& strand, double) {
@@ -109,7 +108,7 @@ double covered_share_of(const PrintedLayer& print, const Contours& region) {
 }
 
 // What is laid down, as a share of what the outline asks for: its strands' flanks are round.
-double laid_share_of(const PrintedLayer& print) {
+double laid_share_of(const FilledLayer& print) {
     const double round_mm = span.height_mm() * (1 - pi / 4);
     double laid = 0;
     for_strands(print, [&](const Strand& strand, double flow) {
@@ -120,7 +119,7 @@ double laid_share_of(const PrintedLayer& print) {
 }
 
 // How far strands of walls reach out of the outline.
-double outside_mm(const PrintedLayer& print) {
+double outside_mm(const FilledLayer& print) {
     const Boundary outline(print.layer.outline);
     double most = 0;
     for (const Strand& wall : print.layer.walls.strands) {
@@ -143,8 +142,8 @@ TEST_CASE("gaps: at 100 % fill, necks between the walls that no line fits into w
         CAPTURE(neck_mm);
         const double half_mm = 2 + walls_mm + neck_mm;
         const Contours plate{rectangle(-4.5, -half_mm, 4.5, half_mm), FullCircle{{0, 0}, 2, false}};
-        for (const Motion& motion : motions) {
-            const PrintedLayer print = printed_solid(lyr::testing::moved(plate, motion));
+        for (const Motion& motion : part_motions) {
+            const FilledLayer print = printed_solid(lyr::testing::moved(plate, motion));
             CHECK(covered_share_of(print, print.layer.outline) >= 0.993);
             CHECK(laid_share_of(print) == doctest::Approx(1).epsilon(0.006));
         }
@@ -162,8 +161,8 @@ TEST_CASE(
         };
         // As far as there are walls only. What is thinner than 0.2 mm is left out, 1.6 % of it.
         const Contours tip = wedge(0.8 / std::tan(tip_rad / 2));
-        for (const Motion& motion : motions) {
-            const PrintedLayer print = printed_solid(lyr::testing::moved(wedge(10), motion));
+        for (const Motion& motion : part_motions) {
+            const FilledLayer print = printed_solid(lyr::testing::moved(wedge(10), motion));
             CHECK(covered_share_of(print, lyr::testing::moved(tip, motion)) >= 0.98);
             CHECK(laid_share_of(print) == doctest::Approx(1).epsilon(0.01));
         }
@@ -180,8 +179,8 @@ TEST_CASE(
             comb = combined(comb, Contours{rectangle(2.5 * tooth, 2, 2.5 * tooth + rib_mm, 10)},
                             Operation::unite, 1e-3)
                        .contours;
-        for (const Motion& motion : motions) {
-            const PrintedLayer print = printed_solid(lyr::testing::moved(comb, motion));
+        for (const Motion& motion : part_motions) {
+            const FilledLayer print = printed_solid(lyr::testing::moved(comb, motion));
             CHECK(covered_share_of(print, print.layer.outline) >= 0.99);
             CHECK(laid_share_of(print) == doctest::Approx(1).epsilon(0.01));
         }
@@ -197,8 +196,8 @@ TEST_CASE("gaps: two walls that go through a short neck lay over each other ther
         for (const double x : {-at_mm, at_mm})
             for (const double y : {-at_mm, at_mm})
                 plate.push_back(FullCircle{{x, y}, radius_mm, false});
-        for (const Motion& motion : motions) {
-            const PrintedLayer print = printed_solid(lyr::testing::moved(plate, motion));
+        for (const Motion& motion : part_motions) {
+            const FilledLayer print = printed_solid(lyr::testing::moved(plate, motion));
             // All of it are necks and gaps, into whose walls strands reach a little.
             CHECK(laid_share_of(print) >= 0.985);
             CHECK(laid_share_of(print) <= 1.02);
@@ -219,8 +218,8 @@ TEST_CASE("gaps: rings of solid fill left their middle open") {
                                         Contours{rectangle(3, 0, 8.3, 11)}, Operation::unite, 1e-3)
                                    .contours};
     for (const Contours& shape : shapes)
-        for (const Motion& motion : motions) {
-            PrintedLayer print = printed(lyr::testing::moved(shape, motion), options);
+        for (const Motion& motion : part_motions) {
+            FilledLayer print = printed(lyr::testing::moved(shape, motion), options);
             print.layer.printed = figures_of(print.layer.outline);
             CHECK(covered_share_of(print, print.layer.outline) >= 0.99);
             CHECK(laid_share_of(print) == doctest::Approx(1).epsilon(0.01));
@@ -238,7 +237,7 @@ TEST_CASE("a perforated plate took a minute for the middles of the net between i
         Options options;
         options.profile.infill.density = 1;
         options.profile.skin.pattern = pattern;
-        const PrintedLayer print = printed(plate, options);
+        const FilledLayer print = printed(plate, options);
         std::size_t lines = 0;
         for (const Piece& piece : print.fill.pieces)
             lines += piece.role != format::Role::gap_fill && piece.role != format::Role::thin_wall;

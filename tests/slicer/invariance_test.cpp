@@ -13,14 +13,14 @@
 
 #include "kernel/section/cutter.h"
 #include "slicer/layers.h"
+#include "slicer/scene.h"
 #include "slicer/slicer.h"
 
 using namespace lyr;
 using namespace lyr::slicer;
+using lyr::testing::parts;
 
 namespace {
-
-const std::string parts = std::string(LYR_FIXTURES) + "/parts/";
 
 // The lower teeth take too long for what they add.
 const std::vector<std::string> files{

@@ -6,12 +6,13 @@
 
 #include <numbers>
 
+#include "slicer/scene.h"
+
 using namespace lyr;
 using namespace lyr::slicer;
+using lyr::testing::span;
 
 namespace {
-
-constexpr LayerSpan span{0.2, 0.4};
 
 Contour polygon(std::initializer_list<Point2> corners, double turn_rad) {
     const Eigen::Rotation2Dd turn(turn_rad);

@@ -25,7 +25,7 @@ namespace {
 
 const double width_mm = Options{}.profile.perimeters.width_mm;
 
-OutlinedLayer layer_of(const Contours& outline) {
+OutlinedLayer seen_layer(const Contours& outline) {
     OutlinedLayer layer{.outline = outline};
     layer.seen = SkinOutline(layer.outline, Options{}.profile.skin.width_mm);
     return layer;
@@ -33,7 +33,8 @@ OutlinedLayer layer_of(const Contours& outline) {
 
 // Of walls over a layer. The layer itself is wide enough to be anywhere.
 std::optional<HeldWalls> held_by(const Contours& below, const Options& options = {}) {
-    const OutlinedLayer layer = layer_of({rectangle(-90, -90, 90, 90)}), under = layer_of(below);
+    const OutlinedLayer layer = seen_layer({rectangle(-90, -90, 90, 90)}),
+                        under = seen_layer(below);
     return HeldWalls::of(layer, under, options);
 }
 
@@ -149,12 +150,12 @@ TEST_CASE("overhang walls 2: a slot that is hardly wider than a line changes not
 TEST_CASE(
     "overhang walls: none where the layer below is as large, leans little, or they are not asked "
     "for") {
-    const OutlinedLayer layer = layer_of({rectangle(0, 0, 20, 10)});
+    const OutlinedLayer layer = seen_layer({rectangle(0, 0, 20, 10)});
     CHECK(!HeldWalls::of(layer, layer, {}));
-    CHECK(HeldWalls::of(layer, layer_of({rectangle(1, 1, 19, 9)}), {}));
+    CHECK(HeldWalls::of(layer, seen_layer({rectangle(1, 1, 19, 9)}), {}));
     Options options;
     options.profile.bridge.walls = false;
-    CHECK(!HeldWalls::of(layer, layer_of({}), options));
+    CHECK(!HeldWalls::of(layer, seen_layer({}), options));
 }
 
 TEST_CASE("walls over a counterbore were printed as if the layer below held them") {

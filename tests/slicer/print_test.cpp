@@ -11,25 +11,16 @@
 #include <set>
 
 #include "format/reader.h"
+#include "slicer/scene.h"
 #include "slicer/slicer.h"
 
 using namespace lyr;
 using namespace lyr::slicer;
+using lyr::testing::bytes_of;
+using lyr::testing::parts;
+using lyr::testing::scratch;
 
 namespace {
-
-const std::string parts = std::string(LYR_FIXTURES) + "/parts/";
-
-std::string scratch(const std::string& name) {
-    const std::string folder = std::string(LYR_BUILD) + "/test-print/";
-    std::filesystem::create_directories(folder);
-    return folder + name;
-}
-
-std::string bytes_of(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
 
 Result<Summary> print_part(const std::string& file, const std::string& lyr, Options options,
                            const std::string& report = "") {

@@ -15,6 +15,7 @@
 #include "kernel/brep/assembly.h"
 #include "kernel/brep/placement.h"
 #include "kernel/solids.h"
+#include "slicer/scene.h"
 #include "slicer/slicer.h"
 
 using namespace lyr;
@@ -31,12 +32,12 @@ Options with_raft(std::uint32_t layers) {
     return options;
 }
 
-struct PrintedLayer {
+struct LayerRoles {
     format::LayerState state;
     std::set<format::Role> roles{};
 };
 
-std::vector<PrintedLayer> printed(const Model& model, const Options& options, Summary* summary) {
+std::vector<LayerRoles> printed(const Model& model, const Options& options, Summary* summary) {
     const std::string folder = std::string(LYR_BUILD) + "/test-raft/";
     std::filesystem::create_directories(folder);
     Diagnostics diagnostics;
@@ -48,7 +49,7 @@ std::vector<PrintedLayer> printed(const Model& model, const Options& options, Su
     *summary = *done;
     auto reader = format::Reader::open(folder + "part.lyr");
     REQUIRE(reader);
-    std::vector<PrintedLayer> layers;
+    std::vector<LayerRoles> layers;
     for (;;) {
         const auto next = reader->next();
         REQUIRE(next);
@@ -58,10 +59,6 @@ std::vector<PrintedLayer> printed(const Model& model, const Options& options, Su
         if (const auto* start = std::get_if<format::PathStart>(&**next))
             layers.back().roles.insert(start->style.role);
     }
-}
-
-Model at(Model model, double x, double y, double z) {
-    return transformed(std::move(model), Eigen::Affine3d(Eigen::Translation3d(x, y, z)));
 }
 
 double volume_of(const Summary& summary, format::Role role) {

@@ -9,14 +9,14 @@
 #include "kernel/section/cutter.h"
 #include "slicer/bounds.h"
 #include "slicer/layers.h"
+#include "slicer/scene.h"
 #include "slicer/slicer.h"
 
 using namespace lyr;
 using namespace lyr::slicer;
+using lyr::testing::parts;
 
 namespace {
-
-const std::string parts = std::string(LYR_FIXTURES) + "/parts/";
 
 // Relative agreement of areas with the reference, and what the tolerance allows along the boundary.
 constexpr double area_agreement = 1e-5;

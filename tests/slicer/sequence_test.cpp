@@ -17,7 +17,7 @@ namespace {
 
 using Box2 = Eigen::AlignedBox2d;
 
-constexpr double width_mm = 30, depth_mm = 20;
+constexpr double copy_width_mm = 30, copy_depth_mm = 20;
 
 profile::Profile sequential(std::uint32_t copies) {
     profile::Profile profile;
@@ -27,11 +27,11 @@ profile::Profile sequential(std::uint32_t copies) {
 }
 
 Result<PlateLayout> layout_of(const profile::Profile& profile, double height_mm) {
-    return lay_out({Vector3(0, 0, 0), Vector3(width_mm, depth_mm, height_mm)}, profile);
+    return lay_out({Vector3(0, 0, 0), Vector3(copy_width_mm, copy_depth_mm, height_mm)}, profile);
 }
 
 double distance_mm(const Vector2& a, const Vector2& b) {
-    const Box2 box(Point2(0, 0), Point2(width_mm, depth_mm));
+    const Box2 box(Point2(0, 0), Point2(copy_width_mm, copy_depth_mm));
     return box.translated(a).exteriorDistance(box.translated(b));
 }
 
@@ -72,9 +72,10 @@ TEST_CASE("plate 4: copies that meet the gantry lie one behind the other, from t
     CHECK(low->columns > 1);
     CHECK(high->columns == 1);
     for (std::size_t i = 1; i < high->shifts.size(); ++i)
-        CHECK(high->shifts[i].y() >= high->shifts[i - 1].y() + depth_mm + 45 - 1e-5);
+        CHECK(high->shifts[i].y() >= high->shifts[i - 1].y() + copy_depth_mm + 45 - 1e-5);
     // What stands on a raft is as much higher (its box begins there).
-    const auto raised = lay_out({Vector3(0, 0, 2), Vector3(width_mm, depth_mm, 26)}, profile);
+    const auto raised =
+        lay_out({Vector3(0, 0, 2), Vector3(copy_width_mm, copy_depth_mm, 26)}, profile);
     REQUIRE(raised);
     CHECK(raised->columns == 1);
     // Layer by layer nothing stands higher than the nozzle.
@@ -106,15 +107,15 @@ TEST_CASE(
 
 namespace {
 
-const std::string folder = std::string(LYR_BUILD) + "/test-sequence/";
+const std::string sequence_folder = std::string(LYR_BUILD) + "/test-sequence/";
 
 Summary printed(const std::string& name, const Options& options) {
-    std::filesystem::create_directories(folder);
+    std::filesystem::create_directories(sequence_folder);
     Diagnostics diagnostics;
     auto model = load(std::string(LYR_FIXTURES) + "/parts/cube_hole.step", options, diagnostics);
     REQUIRE(model);
     const auto summary = print(
-        std::move(*model), "cube_hole.step", folder + name, "", options,
+        std::move(*model), "cube_hole.step", sequence_folder + name, "", options,
         [](const char*, std::size_t, std::size_t) {}, diagnostics);
     REQUIRE(summary);
     CHECK(diagnostics.empty());
@@ -138,7 +139,7 @@ struct Layer {
 };
 
 std::vector<Layer> layers_of(const std::string& name) {
-    auto reader = format::Reader::open(folder + name);
+    auto reader = format::Reader::open(sequence_folder + name);
     REQUIRE(reader);
     std::vector<Layer> layers;
     double head_mm = 0;
@@ -190,7 +191,7 @@ TEST_CASE("sequence: a copy costs what one part costs, and the same bytes on any
     for (const unsigned threads : {1u, 4u}) {
         options.threads = threads;
         three = printed("threads.lyr", options);
-        std::ifstream file(folder + "threads.lyr", std::ios::binary);
+        std::ifstream file(sequence_folder + "threads.lyr", std::ios::binary);
         results.insert({std::istreambuf_iterator<char>(file), {}});
     }
     CHECK(results.size() == 1);
@@ -207,7 +208,7 @@ TEST_CASE("sequence: a skirt is printed once, before everything, around all copi
     Options options = three_copies();
     options.profile.adhesion.kind = profile::AdhesionKind::skirt;
     printed("skirt.lyr", options);
-    auto reader = format::Reader::open(folder + "skirt.lyr");
+    auto reader = format::Reader::open(sequence_folder + "skirt.lyr");
     REQUIRE(reader);
     Box2 skirt, all;
     std::set<std::uint32_t> with_skirt;

@@ -16,20 +16,13 @@
 #include "kernel/toolpath/boundary.h"
 #include "slicer/bounds.h"
 #include "slicer/layers.h"
+#include "slicer/scene.h"
 
 using namespace lyr;
 using namespace lyr::slicer;
 using namespace lyr::testing;
 
 namespace {
-
-Model at(Model model, double x, double y, double z) {
-    return transformed(std::move(model), Eigen::Affine3d(Eigen::Translation3d(x, y, z)));
-}
-
-Model turned(Model model, double angle_rad, const Vector3& axis) {
-    return transformed(std::move(model), Eigen::Affine3d(Eigen::AngleAxisd(angle_rad, axis)));
-}
 
 Model together(Model a, Model b) {
     append(a, std::move(b));
@@ -203,12 +196,6 @@ double held_share(const Supported& s, Leans leans) {
     }
     REQUIRE(all > 0);
     return static_cast<double>(held) / static_cast<double>(all);
-}
-
-std::string scratch(const std::string& name) {
-    const std::string folder = std::string(LYR_BUILD) + "/test-support/";
-    std::filesystem::create_directories(folder);
-    return folder + name;
 }
 
 const auto anywhere = [](const Point3&) { return true; };

@@ -8,16 +8,18 @@
 #include "kernel/brep/assembly.h"
 #include "kernel/brep/placement.h"
 #include "kernel/solids.h"
+#include "slicer/scene.h"
 #include "slicer/slicer.h"
 
 using namespace lyr;
 using namespace lyr::slicer;
+using lyr::testing::at;
 using lyr::testing::box;
 using lyr::testing::pi;
 
 namespace {
 
-struct Printed {
+struct Measured {
     Result<Summary> summary;
     Diagnostics diagnostics;
 
@@ -27,7 +29,7 @@ struct Printed {
     }
 };
 
-Printed printed(const Model& model, const Options& options = {}) {
+Measured measured(const Model& model, const Options& options = {}) {
     const std::string folder = std::string(LYR_BUILD) + "/test-thin/";
     std::filesystem::create_directories(folder);
     Diagnostics diagnostics;
@@ -35,10 +37,6 @@ Printed printed(const Model& model, const Options& options = {}) {
         model, "thin", folder + "thin.lyr", "", options,
         [](const char*, std::size_t, std::size_t) {}, diagnostics);
     return {std::move(summary), std::move(diagnostics)};
-}
-
-Model at(const Model& model, double x, double y, double z) {
-    return transformed(model, Eigen::Affine3d(Eigen::Translation3d(x, y, z)));
 }
 
 // On a plate of 10 x 10 x 1 mm.
@@ -60,7 +58,7 @@ TEST_CASE("walls of 0.8, 0.9 and 0.95 mm were a fifteenth too full or a tenth to
             CAPTURE(density);
             Options options;
             options.profile.infill.density = density;
-            const Printed wall = printed(box(40, wall_mm, 0.8), options);
+            const Measured wall = measured(box(40, wall_mm, 0.8), options);
             REQUIRE(wall.summary);
             CHECK(wall.diagnostics.empty());
             CHECK(wall.volume_mm3(options) ==
@@ -76,14 +74,14 @@ TEST_CASE(
     options.profile.infill.density = 1;
     for (const double post_mm : {0.3, 0.4, 0.5, 0.64, 0.7, 0.9, 1.2, 1.5}) {
         CAPTURE(post_mm);
-        const Printed post = printed(box(post_mm, post_mm, 2), options);
+        const Measured post = measured(box(post_mm, post_mm, 2), options);
         REQUIRE(post.summary);
         const double edge_mm = post_mm - round_mm;
         CHECK(post.volume_mm3(options) == doctest::Approx(2 * edge_mm * edge_mm).epsilon(0.03));
     }
     for (const double length_mm : {0.9, 1.3, 2.6}) {
         CAPTURE(length_mm);
-        const Printed bar = printed(box(0.64, length_mm, 2), options);
+        const Measured bar = measured(box(0.64, length_mm, 2), options);
         REQUIRE(bar.summary);
         CHECK(bar.volume_mm3(options) ==
               doctest::Approx(2 * (0.64 - round_mm) * (length_mm - round_mm)).epsilon(0.05));
@@ -93,7 +91,7 @@ TEST_CASE(
 TEST_CASE("pins and walls of less than 0.22 mm were left out without a word") {
     for (const double pin_mm : {0.1, 0.15, 0.19, 0.21}) {
         CAPTURE(pin_mm);
-        const Printed made = printed(on_plate(box(pin_mm, pin_mm, 4), 2.5));
+        const Measured made = measured(on_plate(box(pin_mm, pin_mm, 4), 2.5));
         REQUIRE(made.summary);
         REQUIRE(made.diagnostics.size() == 1);
         const Diagnostic& warning = made.diagnostics[0];
@@ -104,7 +102,7 @@ TEST_CASE("pins and walls of less than 0.22 mm were left out without a word") {
         CHECK(warning.where.x_mm.value() == doctest::Approx(6).epsilon(0.001));
         CHECK(warning.where.y_mm.value() == doctest::Approx(6).epsilon(0.001));
     }
-    const Printed wall = printed(on_plate(box(3, 0.15, 4), 2.5));
+    const Measured wall = measured(on_plate(box(3, 0.15, 4), 2.5));
     REQUIRE(wall.diagnostics.size() == 1);
     CHECK(wall.diagnostics[0].where.y_mm.value() == doctest::Approx(6).epsilon(0.01));
 }
@@ -116,7 +114,7 @@ TEST_CASE(
         Model all = box(4, 4, 1);
         append(all, at(box(4, 4, 1), 4.3, 0, 0));
         append(all, at(box(0.5, neck_mm, 1), 2.15, 0, 0));
-        const Printed made = printed(all);
+        const Measured made = measured(all);
         REQUIRE(made.summary);
         REQUIRE(made.diagnostics.size() == (neck_mm < 0.2 ? 1 : 0));
         if (neck_mm > 0.2) continue;
@@ -133,15 +131,15 @@ TEST_CASE(
 TEST_CASE("pins of 0.25 to 0.6 mm are printed") {
     for (const double pin_mm : {0.25, 0.3, 0.4, 0.45, 0.6}) {
         CAPTURE(pin_mm);
-        const Printed plate = printed(box(10, 10, 1));
-        const Printed pin = printed(on_plate(box(pin_mm, pin_mm, 4), 2.5));
+        const Measured plate = measured(box(10, 10, 1));
+        const Measured pin = measured(on_plate(box(pin_mm, pin_mm, 4), 2.5));
         CHECK(pin.diagnostics.empty());
         if (pin_mm > 0.25) CHECK(pin.summary->filament_mm > plate.summary->filament_mm + 0.02);
     }
 }
 
 TEST_CASE("of pins alone that no line fits into nothing is printed, and that is an error") {
-    const Printed pin = printed(box(0.21, 0.21, 4));
+    const Measured pin = measured(box(0.21, 0.21, 4));
     REQUIRE(!pin.summary);
     CHECK(pin.summary.error().message.starts_with("nothing to print"));
 }

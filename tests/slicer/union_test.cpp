@@ -18,16 +18,20 @@
 #include "kernel/solids.h"
 #include "kernel/toolpath/offset.h"
 #include "slicer/layers.h"
+#include "slicer/scene.h"
 #include "slicer/slicer.h"
 
 using namespace lyr;
 using namespace lyr::slicer;
+using lyr::testing::at;
 using lyr::testing::box;
+using lyr::testing::bytes_of;
 using lyr::testing::pi;
+using lyr::testing::scratch;
 
 namespace {
 
-constexpr double height_mm = 10;
+constexpr double block_height_mm = 10;
 constexpr double layer_height_mm = 0.2;
 
 Options solid() {
@@ -36,29 +40,14 @@ Options solid() {
     return options;
 }
 
-Model at(const Model& model, double x, double y, double z = 0) {
-    return transformed(model, Eigen::Affine3d(Eigen::Translation3d(x, y, z)));
-}
-
 Model rod(double radius) {
-    return lyr::testing::frustum(radius, radius, height_mm, lyr::testing::Side::halves);
+    return lyr::testing::frustum(radius, radius, block_height_mm, lyr::testing::Side::halves);
 }
 
 Model together(const std::vector<Model>& parts) {
     Model all;
     for (const Model& part : parts) append(all, part);
     return all;
-}
-
-std::string scratch(const std::string& name) {
-    const std::string folder = std::string(LYR_BUILD) + "/test-union/";
-    std::filesystem::create_directories(folder);
-    return folder + name;
-}
-
-std::string bytes_of(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
 }
 
 // A block that stands on a corner or leans far out is warned of.
@@ -166,7 +155,7 @@ private:
     double pitch_mm_ = 1;
 };
 
-std::vector<PrintedLayer> layers_of(const std::string& lyr) {
+std::vector<PrintedLayer> layers_in(const std::string& lyr) {
     auto reader = format::Reader::open(lyr);
     REQUIRE(reader);
     PrintReader print(reader->header().quantum);
@@ -180,7 +169,7 @@ std::vector<PrintedLayer> layers_of(const std::string& lyr) {
 
 std::vector<double> wall_areas(const std::string& lyr) {
     std::vector<double> areas;
-    for (const PrintedLayer& layer : layers_of(lyr)) areas.push_back(layer.enclosed_mm2());
+    for (const PrintedLayer& layer : layers_in(lyr)) areas.push_back(layer.enclosed_mm2());
     return areas;
 }
 
@@ -205,7 +194,7 @@ void check_print(const std::vector<Model>& solids, const Expected& expected) {
     CHECK(summary.contours == 50 * expected.contours);
     CHECK(summary.united_layers == expected.united_layers);
     CHECK(occurrences(lyr + ".jsonl", "\"loops\":" + std::to_string(solids.size()) + ",") == 50);
-    std::vector<PrintedLayer> layers = layers_of(lyr);
+    std::vector<PrintedLayer> layers = layers_in(lyr);
     REQUIRE(layers.size() == 50);
     for (PrintedLayer& layer : layers) {
         // Corners are rounded to the file's quantum, 1 um, along some 100 mm.
@@ -226,20 +215,20 @@ double segment_area(double radius, double distance) {
 }  // namespace
 
 TEST_CASE("slicer 7: solids that overlap, touch or lie within each other are printed as one") {
-    const Model block = box(20, 10, height_mm);
+    const Model block = box(20, 10, block_height_mm);
     // Overlapping boxes, one a quarter over the other.
     check_print({block, at(block, 10, 5)}, {350, 1, 50});
     // A wall in common, of the same and of another length.
     check_print({block, at(block, 20, 0)}, {400, 1, 50});
-    check_print({block, at(box(6, 4, height_mm), 13, 1)}, {224, 1, 50});
+    check_print({block, at(box(6, 4, block_height_mm), 13, 1)}, {224, 1, 50});
     // A rod in a box, across its wall, and on it from outside.
     check_print({block, at(rod(3), 2, 1)}, {200, 1, 50});
     check_print({block, at(rod(4), 8, 0)}, {200 + segment_area(4, 2), 1, 50});
     check_print({at(rod(3), 10, 0), block}, {200 + pi * 9 / 2, 1, 50});
     // Two rods; many boxes in a ring.
     check_print({rod(4), at(rod(4), 4, 0)}, {32 * pi - 2 * segment_area(4, 2), 1, 50});
-    check_print({block, at(block, 0, 30), at(box(4, 40, height_mm), -12, 15),
-                 at(box(4, 40, height_mm), 12, 15)},
+    check_print({block, at(block, 0, 30), at(box(4, 40, block_height_mm), -12, 15),
+                 at(box(4, 40, block_height_mm), 12, 15)},
                 {720, 2, 50});
 }
 
@@ -266,16 +255,16 @@ TEST_CASE("slicer 7: a single solid's contours pass untouched, in their order") 
 }
 
 TEST_CASE("slicer 7: solids apart are printed apart, as they are") {
-    const Model block = box(20, 10, height_mm);
+    const Model block = box(20, 10, block_height_mm);
     check_print({block, at(block, 20.01, 0)}, {400, 2, 0});
     check_print({block, at(rod(3), 0, 9)}, {200 + 9 * pi, 2, 0});
 }
 
 TEST_CASE("slicer 7: only the layers where solids meet are united, and reports keep them apart") {
     const std::string lyr = scratch("steps.lyr");
-    const Model block = box(20, 10, height_mm);
-    const Summary summary =
-        printed(together({block, at(box(20, 10, height_mm / 2), 10, 5, -height_mm / 4)}), lyr);
+    const Model block = box(20, 10, block_height_mm);
+    const Summary summary = printed(
+        together({block, at(box(20, 10, block_height_mm / 2), 10, 5, -block_height_mm / 4)}), lyr);
     CHECK(summary.layers == 50);
     CHECK(summary.united_layers == 25);
     const auto areas = wall_areas(lyr);
@@ -286,8 +275,9 @@ TEST_CASE("slicer 7: only the layers where solids meet are united, and reports k
 }
 
 TEST_CASE("slicer 2, 7: the print is the same for any order of the solids and number of threads") {
-    const std::vector<Model> solids{box(20, 10, height_mm), at(rod(4), 8, 0), at(rod(3), -10, 2),
-                                    at(box(6, 4, height_mm), 13, 1), at(rod(2), 40, 0)};
+    const std::vector<Model> solids{box(20, 10, block_height_mm), at(rod(4), 8, 0),
+                                    at(rod(3), -10, 2), at(box(6, 4, block_height_mm), 13, 1),
+                                    at(rod(2), 40, 0)};
     std::vector<Model> reversed(solids.rbegin(), solids.rend());
     Options options;
     options.threads = 1;
@@ -300,12 +290,12 @@ TEST_CASE("slicer 2, 7: the print is the same for any order of the solids and nu
 TEST_CASE("slicer 7: lying askew, solids that share a wall are one as well") {
     const std::string lyr = scratch("askew.lyr");
     for (const Vector3& up : {Vector3(0.3, 0.5, 0.8), Vector3(1, 2, 3), Vector3(0, 0.1, 1)}) {
-        const Model block = box(20, 10, height_mm);
+        const Model block = box(20, 10, block_height_mm);
         const auto turned = [&](const Model& model) { return transformed(model, turned_up(up)); };
         const Summary apart = printed(turned(together({at(block, -10, 0), at(block, 10, 0)})), lyr,
                                       {}, Stands::askew);
         const auto areas = wall_areas(lyr);
-        const Summary whole = printed(turned(box(40, 10, height_mm)), lyr, {}, Stands::askew);
+        const Summary whole = printed(turned(box(40, 10, block_height_mm)), lyr, {}, Stands::askew);
         const auto expected = wall_areas(lyr);
         CHECK(apart.layers == whole.layers);
         CHECK(apart.contours == whole.contours);

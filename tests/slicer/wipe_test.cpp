@@ -148,7 +148,7 @@ TEST_CASE("wipe: pieces are moved, and arcs of more than half a turn come in two
 namespace {
 
 // A motion that extrudes, as a segment.
-struct Printed {
+struct PrintedSegment {
     Point2 from;
     Segment segment;
 };
@@ -157,7 +157,7 @@ Point2 mm_of(const format::Point& point) {
     return {static_cast<double>(point.x) * 1e-3, static_cast<double>(point.y) * 1e-3};
 }
 
-std::vector<Printed> printed_of(const format::Operation& operation) {
+std::vector<PrintedSegment> printed_of(const format::Operation& operation) {
     if (const auto* line = std::get_if<format::Line>(&operation))
         return {{mm_of(line->from), {mm_of(line->to), 0}}};
     if (const auto* arc = std::get_if<format::Arc>(&operation))
@@ -192,11 +192,11 @@ TEST_CASE("wipe: in a print every retraction wipes along what was printed since 
     CHECK(diagnostics.empty());
     auto reader = format::Reader::open(lyr);
     REQUIRE(reader);
-    std::vector<Printed> printed;
+    std::vector<PrintedSegment> printed;
     std::size_t wipes = 0, bent = 0, retractions = 0;
     double worst_mm = 0, depth_mm = 0;
     while (const format::Operation* operation = reader->read()) {
-        for (const Printed& one : printed_of(*operation)) printed.push_back(one);
+        for (const PrintedSegment& one : printed_of(*operation)) printed.push_back(one);
         if (const auto* retract = std::get_if<format::Retract>(operation)) {
             retractions += retract->depth_mm > 0 && depth_mm == 0;
             depth_mm = retract->depth_mm;
@@ -211,7 +211,7 @@ TEST_CASE("wipe: in a print every retraction wipes along what was printed since 
         CHECK(wipe->left_mm < 3.01);
         double nearest_mm = 1e9;
         const Segment piece{mm_of(wipe->to), static_cast<double>(wipe->sagitta) * 1e-3};
-        for (const Printed& one : printed)
+        for (const PrintedSegment& one : printed)
             nearest_mm = std::min(nearest_mm, distance_mm(one.from, one.segment,
                                                           point_at(mm_of(wipe->from), piece, 0.5)));
         worst_mm = std::max(worst_mm, nearest_mm);

@@ -16,14 +16,14 @@ using namespace std::chrono_literals;
 
 namespace {
 
-struct Scene {
+struct ServedPrint {
     std::string path;
     run::PrintControl print;
     config::Printer printer = config::generic_printer();
     Dispatcher dispatcher{print, printer};
     std::optional<Server> server;
 
-    explicit Scene(const std::string& name) : path(socket_path(name)) {
+    explicit ServedPrint(const std::string& name) : path(socket_path(name)) {
         run::PrintStatus status;
         status.state = run::PrintState::printing;
         print.publish(status);
@@ -44,7 +44,7 @@ constexpr const char* status_line = "{\"command\":\"status\"}\n";
 }  // namespace
 
 TEST_CASE("server: greets, answers in order, and goes on after what is wrong") {
-    Scene scene("answers");
+    ServedPrint scene("answers");
     Connection client(scene.path);
     CHECK(json::parse(client.line())["protocol"] == protocol_version);
     client.send("{\"id\":1,\"command\":\"status\"}\nrubbish\n" + std::string(10'000, 'x') +
@@ -58,7 +58,7 @@ TEST_CASE("server: greets, answers in order, and goes on after what is wrong") {
 }
 
 TEST_CASE("server 3: who has only stopped sending gets all answers, then the end") {
-    Scene scene("half");
+    ServedPrint scene("half");
     Connection client(scene.path);
     std::string lines;
     for (int i = 0; i < 500; ++i) lines += status_line;
@@ -72,7 +72,7 @@ TEST_CASE("server 3: who has only stopped sending gets all answers, then the end
 TEST_CASE(
     "server 2: sixteen silent clients kept an emergency stop out; the longest silent one gives "
     "way") {
-    Scene scene("many");
+    ServedPrint scene("many");
     std::vector<std::unique_ptr<Connection>> clients;
     for (std::size_t i = 0; i < Server::most_clients; ++i) {
         clients.push_back(std::make_unique<Connection>(scene.path));
@@ -98,7 +98,7 @@ TEST_CASE(
 }
 
 TEST_CASE("server 1: a client that sends and never reads keeps nobody waiting") {
-    Scene scene("deaf");
+    ServedPrint scene("deaf");
     Connection deaf(scene.path), other(scene.path);
     (void)other.line();
     // More than all buffers on the way hold; what does not fit is not sent.
@@ -125,7 +125,7 @@ TEST_CASE("server 1: a client that sends and never reads keeps nobody waiting") 
 }
 
 TEST_CASE("server 4: a subscriber is told in its interval, and once more at the end") {
-    Scene scene("subscribed");
+    ServedPrint scene("subscribed");
     Connection client(scene.path);
     (void)client.line();
     client.send("{\"command\":\"subscribe\",\"interval_s\":0.1}\n");
@@ -148,7 +148,7 @@ TEST_CASE("server 4: a subscriber is told in its interval, and once more at the 
 }
 
 TEST_CASE("server 1: random bytes from several clients, and the next one is served") {
-    Scene scene("noise");
+    ServedPrint scene("noise");
     std::mt19937 random(3);
     for (int round = 0; round < 60; ++round) {
         Connection client(scene.path);
