@@ -104,7 +104,8 @@ Result<Resumption> find_resumption(const config::Printer& printer, const std::st
     motion::Point head{layer.start_x_mm, layer.start_y_mm, layer.z_mm};
     if (const auto& place_um = resumption.entry.place_um)
         head = {(*place_um)[0] / um_per_mm, (*place_um)[1] / um_per_mm, layer.z_mm};
-    resumption.stopped_z_mm = z_over_start_mm(printer, head);
+    resumption.stopped_z_mm = resumption.entry.layer == 0 ? printer.start_mm[config::axis_z]
+                                                          : z_over_start_mm(printer, head);
     if (const auto rest_nm = resumption.entry.rest_nm)
         resumption.stopped_z_mm = static_cast<double>(*rest_nm) / nm_per_mm;
     return resumption;

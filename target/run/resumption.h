@@ -4,8 +4,8 @@
 //  1. A print goes on at the start of the layer that the head was in, in the state that the file says for it.
 //  2. find_resumption() refuses (status input) when there is no journal, or the file is not the one that it was
 //     written for: not by name, but by all its bytes; or the printer is another one, as printer_identity.h says.
-//  3. x and y of the head are those of start_mm: it was put there, or homed. Its height is that of the layer, or
-//     where the journal says that it was at rest; it begins lifted by pause.lift_mm.
+//  3. x and y of the head are those of start_mm: it was put there, or homed. Its height is that of the layer, before the
+//     first one that of start_mm, or where the journal says that it was at rest; it begins lifted by pause.lift_mm.
 //  4. Over a crooked bed, that height counts from the bed's at start_mm. Of a head that was not at rest, it is that
 //     of the place that the journal has; without one, of where the layer begins.
 //  5. The filament begins as far drawn back as the journal says, which is not at all of a head that was on its path.

@@ -61,7 +61,7 @@ TEST_CASE(
             const Result<Resumption> found = find_resumption(printer, file);
             REQUIRE_MESSAGE(found.ok(), (found.ok() ? "" : to_string(found.error())));
             CHECK(found->first_layer == std::max(1u, layer) - 1);
-            const double z_mm = is_parked ? 6.5 : 0.2 * std::max(1u, layer);
+            const double z_mm = is_parked ? 6.5 : 0.2 * layer;
             CHECK(found->stopped_z_mm == doctest::Approx(z_mm));
             CHECK(lifted(printer, *found).start_mm[2] == doctest::Approx(z_mm + 5));
             SimulationJob job{file, printer, {}, {}, {}};
@@ -108,6 +108,25 @@ TEST_CASE(
     const Result<Resumption> parked = find_resumption(printer, file);
     REQUIRE(parked.ok());
     CHECK(parked->stopped_z_mm == doctest::Approx(6.5));
+    std::filesystem::remove(file + ".journal");
+}
+
+TEST_CASE("resumption 3: a print cut off before its first layer went on a layer's height too low") {
+    config::Printer printer = config::generic_printer();
+    const std::string file = write_print("before_path", {draw_square, draw_arcs});
+    printer.mesh.area_mm = {0, 0, 200, 200};
+    printer.mesh.heights_mm = {{0, 2}, {0, 2}};
+    for (const double start_mm : {0.0, 10.0}) {
+        printer.start_mm = {150, 20, start_mm};
+        for (const auto& place_um : {std::optional<std::array<std::int32_t, 2>>(),
+                                     std::optional(std::array<std::int32_t, 2>{120'000, 45'500})}) {
+            write_entry(printer, file, 0, {}, place_um);
+            const Result<Resumption> found = find_resumption(printer, file);
+            REQUIRE(found.ok());
+            CHECK(found->first_layer == 0);
+            CHECK(found->stopped_z_mm == start_mm);
+        }
+    }
     std::filesystem::remove(file + ".journal");
 }
 
