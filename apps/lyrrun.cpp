@@ -250,6 +250,7 @@ Status simulate(const Arguments& arguments, const config::Printer& printer) {
 // A print that begins anew forgets what was cut off.
 void tell_forgotten(const Arguments& arguments, const config::Printer& printer) {
     if (arguments.resume || arguments.dry_run) return;
+    if (!run::check_cut_off(printer, arguments.lyr_path)) return;
     const Result<run::Resumption> found = run::find_resumption(printer, arguments.lyr_path);
     if (!found) return;
     std::string text = run::text_of(*found, arguments.lyr_path);

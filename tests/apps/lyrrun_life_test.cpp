@@ -136,6 +136,14 @@ TEST_CASE("lyrrun: a dry run said that it forgot where a print was cut off, and 
     }
 }
 
+TEST_CASE("lyrrun: a print that was refused beside one under way said that it forgets that") {
+    const CutOff print("beside");
+    const Result<run::Journal> held = run::Journal::open(print.journal);
+    const Ended ended = print.lyrrun("--no-heat --socket s");
+    CHECK(ended.err.find("begins anew") == std::string::npos);
+    CHECK(run::find_resumption(*config::read_printer(print.folder / "p.toml"), print.file).ok());
+}
+
 TEST_CASE("lyrrun: a print resumes with the next filament after it was cut off without") {
     run::JournalEntry out;
     out.is_unloaded = true;
