@@ -141,6 +141,21 @@ void look_after(const Watched& watched, double now_s) {
                      status_text(shared.control.status()));
 }
 
+// Why it was stopped before its path.
+Diagnostic stopped_before(const Watched& watched) {
+    const Life& life = watched.life;
+    Diagnostic ended{Severity::error, ExitStatus::stopped, "stopped on request", {}};
+    if (life.is_cancelled())
+        ended.message = "cancelled";
+    else if (life.ended_by())
+        ended.message = *life.ended_by();
+    if (const auto trip = watched.shared.trip()) ended = diagnostic_of(*trip);
+    if (ended.message.find("is lost") == std::string::npos)
+        ended.message += "; it was homing, and the position of the head is lost";
+    ended.message += "; before the path began, all lines are released";
+    return ended;
+}
+
 // What is to be done before the path, and whether that may begin.
 Before open(const Watched& watched, const PrintJob& job, const Inspection& inspection,
             gpio::GpioChip& chip, gpio::Clock& clock) {
@@ -155,17 +170,9 @@ Before open(const Watched& watched, const PrintJob& job, const Inspection& inspe
     const Before before = job.before(chip, clock, [&] { return opening.asked(); });
     (void)opening.asked();
     if (shared.stop_requests.load() == 0) return before;
-    const bool cancelled = shared.control.ends();
-    // Serves an emergency stop.
+    // Serves what ends it.
     watched.life.tick(heat_time_s());
-    if (const auto trip = shared.trip()) return {diagnostic_of(*trip), before.risen_mm};
-    return {Diagnostic{
-                Severity::error,
-                ExitStatus::stopped,
-                watched.life.ended_by().value_or(cancelled ? "cancelled" : "stopped on request") +
-                    "; before the path began, all lines are released",
-                {}},
-            before.risen_mm};
+    return {stopped_before(watched), before.risen_mm};
 }
 
 // Of a resumption that ends before its path.

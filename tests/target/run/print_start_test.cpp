@@ -159,7 +159,9 @@ TEST_CASE("print 6, 9: an emergency was not heard while a print homes") {
     }
 }
 
-TEST_CASE("print 4, 6: a signal and a cancel stop a print that homes") {
+TEST_CASE(
+    "print 4, 6, 10: a signal and a cancel stop a print that homes, and did not say that its place "
+    "is lost") {
     const Homed by_signal =
         print_and_disturb([](PrintControl&, gpio::MockInputs&) { std::raise(SIGTERM); });
     const Homed by_command =
@@ -169,9 +171,11 @@ TEST_CASE("print 4, 6: a signal and a cancel stop a print that homes") {
         REQUIRE_FALSE(homed->report.ok());
         CHECK(homed->report.error().status == ExitStatus::stopped);
         CHECK(homed->report.error().message.find("before the path began") != std::string::npos);
+        CHECK(homed->report.error().message.find("position of the head is lost") !=
+              std::string::npos);
         CHECK(homed->writes == 1);
     }
-    CHECK(by_command.report.error().message.find("cancelled") != std::string::npos);
+    CHECK(by_command.report.error().message.starts_with("cancelled; it was homing"));
 }
 
 TEST_CASE("print 6: what else is asked for while a print homes waits for its path") {
