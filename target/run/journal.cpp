@@ -224,6 +224,15 @@ Status Journal::write(const JournalEntry& entry) {
     return Done{};
 }
 
+Status Journal::clear() {
+    const bool is_cleared = ::ftruncate(descriptor_, 0) == 0 && ::fsync(descriptor_) == 0;
+    const bool is_device = !is_cleared && errno == EINVAL;
+    if (!is_cleared && !is_device)
+        return failed(ExitStatus::output, "cannot write the journal", path_);
+    is_empty_ = true;
+    return Done{};
+}
+
 void Journal::remove() {
     // What the user named may be no file of ours.
     struct stat kind {};

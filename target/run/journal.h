@@ -64,6 +64,8 @@ public:
     ~Journal();
 
     Status write(const JournalEntry& entry);
+    // Nothing of what it has is found any more, nor after a loss of power; a device is left alone.
+    Status clear();
     // The print is over, and nothing of it is left to resume; a device is left alone.
     void remove();
 

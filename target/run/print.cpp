@@ -120,6 +120,14 @@ std::string status_text(const PrintStatus& status) {
            formatted(", layer %u of %u", status.layer, status.layers);
 }
 
+// What is known and decided before a line is touched.
+struct Prepared {
+    PrintFile file;
+    Inspection inspection;
+    Diagnostics notes;
+    PrintJournal journal;
+};
+
 // What the first thread looks after.
 struct Watched {
     const StopSignals& signals;
@@ -157,9 +165,11 @@ Diagnostic stopped_before(const Watched& watched) {
 }
 
 // What is to be done before the path, and whether that may begin.
-Before open(const Watched& watched, const PrintJob& job, const Inspection& inspection,
-            gpio::GpioChip& chip, gpio::Clock& clock) {
+Before open(const Watched& watched, const PrintJob& job, Prepared& prepared, gpio::GpioChip& chip,
+            gpio::Clock& clock) {
+    if (Status begun = begin_journal(prepared.journal, job.resumption); !begun) return begun;
     if (!job.before) return {};
+    const Inspection& inspection = prepared.inspection;
     Shared& shared = watched.shared;
     PrintStatus status = shared.control.status();
     status.layers = inspection.totals.layers;
@@ -232,16 +242,13 @@ Diagnostic derailed(Diagnostic error) {
     return error;
 }
 
-// What is known and decided before a line is touched.
-struct Prepared {
-    PrintFile file;
-    Inspection inspection;
-    Diagnostics notes;
-    PrintJournal journal;
-};
-
 bool can_resume(const PrintJob& job) {
     return (job.control && job.is_reachable) || job.printer.inputs[config::input_pause];
+}
+
+Status prepare_journals(const PrintJob& job, Prepared& prepared) {
+    if (job.journal.empty()) return Done{};
+    return open_journal(job.printer, job.file, job.journal, prepared.journal, prepared.notes);
 }
 
 Result<Prepared> prepare(const PrintJob& job) {
@@ -254,8 +261,7 @@ Result<Prepared> prepare(const PrintJob& job) {
     const Status possible = check_demands(prepared.inspection, job.printer, job.no_heat,
                                           prepared.notes, can_resume(job));
     if (!possible) return possible.error();
-    if (!job.journal.empty())
-        open_journal(job.printer, job.file, job.journal, prepared.journal, prepared.notes);
+    if (const Status opened = prepare_journals(job, prepared); !opened) return opened.error();
     if (const Status same = prepared.file.check(); !same) return same.error();
     lock_memory(prepared.notes);
     try_precedence(job.printer.timing.cpu, prepared.notes);
@@ -381,7 +387,7 @@ Result<PrintReport> run(const PrintJob& job, Prepared& prepared, gpio::GpioChip&
     Tending tending(heating, shared);
     Supervision supervision(std::move(around.watchdog));
     const Watched watched{signals, shared, life, heating, buttons, supervision};
-    if (const Before opened = open(watched, job, inspection, chip, clock); !opened.status) {
+    if (const Before opened = open(watched, job, prepared, chip, clock); !opened.status) {
         shared.finished.store(true);
         tending.join();
         (void)chip.release();

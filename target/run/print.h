@@ -18,7 +18,9 @@
 //     While `before` is done they are what opening.h says; heaters are tended and inputs watched from then on.
 //  7. With a journal (journal.h) the print can be resumed after it was cut off, also by a signal or a guard, and also
 //     where a resumption ends before its path; one that is done or cancelled takes it away. A journal that cannot be
-//     written, or is another printer's, is a warning, before anything moves and in the status.
+//     written, or is another printer's, is a warning, before anything moves and in the status. What is there of an
+//     earlier print on this printer is gone before anything moves, or, if this one resumes it, can be written; or else
+//     nothing moves (status output).
 //  8. The watchdog is fed by this thread as long as the heaters' thread ticks; the init system is told how it goes.
 //  9. Buttons and sensors act as life.h says; input lines that cannot be read take heat and motion away, as a guard does.
 // 10. Where the head is afterwards is known unless the message says that its position is lost.

@@ -59,16 +59,40 @@ Status try_journal(const config::Printer& printer, const std::string& file, cons
     return Done{};
 }
 
+bool is_of(const config::Printer& printer, const Result<std::optional<JournalEntry>>& entry) {
+    return entry && *entry && (*entry)->printer == identity_of(printer);
+}
+
+// What it says of the head is believed as long as it is there.
+Diagnostic outlived(const Diagnostic& error) {
+    Diagnostic why = error;
+    why.message +=
+        "; nothing has moved, since it would go on saying how high the head was before: mend its "
+        "folder or disk, or remove it";
+    return why;
+}
+
 }  // namespace
 
-void open_journal(const config::Printer& printer, const std::string& file, const std::string& path,
-                  PrintJournal& opened, Diagnostics& notes) {
+Status open_journal(const config::Printer& printer, const std::string& file,
+                    const std::string& path, PrintJournal& opened, Diagnostics& notes) {
     const Status tried = try_journal(printer, file, path, opened, notes);
-    if (tried) return;
+    if (tried) return Done{};
+    const Result<std::optional<JournalEntry>> before = read_journal(path);
+    if (!before || is_of(printer, before)) return is_kept(path) ? tried : outlived(tried.error());
     Diagnostic& note = notes.emplace_back(tried.error());
     note.severity = Severity::warning;
     note.message += "; this print cannot be resumed after a loss of power";
     opened.why_none = note.message;
+    return Done{};
+}
+
+Status begin_journal(PrintJournal& opened, const std::optional<Resumption>& resumption) {
+    if (!opened.journal) return Done{};
+    const Status begun =
+        resumption ? opened.journal->write(resumption->entry) : opened.journal->clear();
+    if (begun) return begun;
+    return outlived(begun.error());
 }
 
 std::string journal_path(const config::Printer& printer, const std::string& file) {

@@ -141,6 +141,8 @@ TEST_CASE("lyrrun: a print that was refused beside one under way said that it fo
     const Result<run::Journal> held = run::Journal::open(print.journal);
     const Ended ended = print.lyrrun("--no-heat --socket s");
     CHECK(ended.err.find("begins anew") == std::string::npos);
+    CHECK(ended.err.find("another print of this file keeps the journal") != std::string::npos);
+    CHECK(ended.err.find("remove it") == std::string::npos);
     CHECK(run::find_resumption(*config::read_printer(print.folder / "p.toml"), print.file).ok());
 }
 

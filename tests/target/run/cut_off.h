@@ -4,12 +4,22 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "target/run/resumption.h"
 
 namespace lyr::tests {
 
 // Of a printer's steppers.
 inline constexpr std::size_t line_count = 8;
+
+// A head that was parked.
+inline run::JournalEntry resting_at(double z_mm) {
+    run::JournalEntry entry;
+    entry.layer = 1;
+    entry.rest_nm = std::llround(z_mm * 1e6);
+    return entry;
+}
 
 // Of this file on this printer, 5 s into a print of 6 layers; the rest is the entry's.
 inline void write_journal(const config::Printer& printer, const std::string& file,

@@ -10,6 +10,7 @@
 
 #include "target/gpio/mock_chip.h"
 #include "target/gpio/mock_inputs.h"
+#include "target/run/cut_off.h"
 #include "target/run/patient_printer.h"
 #include "target/run/print.h"
 #include "target/run/print_files.h"
@@ -236,31 +237,37 @@ TEST_CASE("print: what the print warns of was said after it, and not at all if i
     CHECK(report->warnings.size() == told.size());
 }
 
-TEST_CASE("print 7: a print that does not begin leaves no journal, and the one before as it was") {
-    const std::string file = write_print("not_begun", {draw_stroke});
+TEST_CASE("print 7: a print that is refused leaves no journal, and the one before as it was") {
+    PrintJob job{write_print("not_begun", {draw_stroke}), patient_printer(), true, {}};
+    job.journal = job.file + ".journal";
+    std::filesystem::remove(job.journal);
+    // Its lines are not there.
+    CHECK_FALSE(print(job).ok());
+    CHECK_FALSE(std::filesystem::exists(job.journal));
+    write_journal(job.printer, job.file, resting_at(7.4));
+    CHECK_FALSE(print(job).ok());
+    CHECK(find_resumption(job.printer, job.file).ok());
+    std::filesystem::remove(job.journal);
+}
+
+TEST_CASE(
+    "print 7: a print begun anew that ended while it homed left the height at which the one before "
+    "had rested") {
     gpio::MonotonicClock clock;
     gpio::MockChip chip(start_lines, clock, {});
-    PrintJob job{file, patient_printer(), true, {}};
-    job.journal = file + ".journal";
-    std::filesystem::remove(job.journal);
-    job.before = [](gpio::GpioChip&, gpio::Clock&, const StopSource&) -> Status {
+    PrintJob job{write_print("anew", {draw_stroke}), patient_printer(), true, {}};
+    job.journal = job.file + ".journal";
+    bool has_begun = false;
+    job.before = [&](gpio::GpioChip&, gpio::Clock&, const StopSource&) -> Status {
+        has_begun = true;
+        // As a kill or a loss of power leaves it.
+        CHECK_FALSE(find_resumption(job.printer, job.file).ok());
         return Diagnostic{Severity::error, ExitStatus::machine, "no endstop", {}};
     };
+    write_journal(job.printer, job.file, resting_at(7.4));
     CHECK_FALSE(print(job, chip, clock).ok());
+    CHECK(has_begun);
     CHECK_FALSE(std::filesystem::exists(job.journal));
-    {
-        Result<Journal> journal = Journal::open(job.journal);
-        REQUIRE(journal.ok());
-        JournalEntry entry;
-        entry.file = *identity_of(file);
-        entry.layer = 3;
-        REQUIRE(journal->write(entry).ok());
-    }
-    CHECK_FALSE(print(job, chip, clock).ok());
-    const auto kept = read_journal(job.journal);
-    REQUIRE(kept.ok());
-    REQUIRE(kept->has_value());
-    CHECK((*kept)->layer == 3);
 }
 
 TEST_CASE("inspect 2: a path too slow for the format began to print, and ended in a riddle") {
