@@ -281,6 +281,7 @@ Status print(const Arguments& arguments, const config::Printer& printer) {
             return home::home_before_print(job.printer, job.resumption, chip, clock, stop);
         };
     if (!arguments.dry_run) job.journal = run::journal_path(printer, arguments.lyr_path);
+    job.forgets_others = !arguments.dry_run && counts_on_height(printer);
     job.control = &control;
     job.is_reachable = server->is_reachable();
     job.checked = [&](const Diagnostics& notes) {

@@ -140,8 +140,17 @@ void add_place_options(Options& app, PlaceArguments& arguments) {
         "the heights");
 }
 
+bool counts_on_height(const config::Printer& printer) {
+    return !home::homed_before_print(printer, true)[config::axis_z];
+}
+
 Status work_place(const Program& program, const PlaceArguments& arguments, const home::Job& job) {
     if (arguments.feed_mm) return feed(program, arguments, job);
+    // Homing lifts the head at least.
+    const bool leaves =
+        !arguments.jog_mm || arguments.jog_mm->z != 0 || home::homable(job.printer).any();
+    if (leaves && !job.simulate && counts_on_height(job.printer))
+        if (Status rests = run::check_none_rests(job.printer); !rests) return rests;
     if (arguments.calibrate) return calibrate(program, *arguments.calibrate, job);
     home::AxisSet axes = arguments.home.value_or(home::AxisSet());
     if (axes.none()) axes = home::homable(job.printer);

@@ -20,6 +20,9 @@ struct PlaceArguments {
 
 void add_place_options(Options& app, PlaceArguments& arguments);
 
+// A print that resumes takes its height from where the head stands.
+bool counts_on_height(const config::Printer& printer);
+
 // What the options ask for; the report on standard output.
 Status work_place(const Program& program, const PlaceArguments& arguments, const home::Job& job);
 

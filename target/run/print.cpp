@@ -164,10 +164,18 @@ Diagnostic stopped_before(const Watched& watched) {
     return ended;
 }
 
+// Nothing has moved yet.
+Status begin_journals(const PrintJob& job, PrintJournal& journal) {
+    if (job.forgets_others)
+        if (Status forgotten = forget_others(job.printer, job.journal); !forgotten)
+            return forgotten;
+    return begin_journal(journal, job.resumption);
+}
+
 // What is to be done before the path, and whether that may begin.
 Before open(const Watched& watched, const PrintJob& job, Prepared& prepared, gpio::GpioChip& chip,
             gpio::Clock& clock) {
-    if (Status begun = begin_journal(prepared.journal, job.resumption); !begun) return begun;
+    if (Status begun = begin_journals(job, prepared.journal); !begun) return begun;
     if (!job.before) return {};
     const Inspection& inspection = prepared.inspection;
     Shared& shared = watched.shared;
@@ -248,6 +256,7 @@ bool can_resume(const PrintJob& job) {
 
 Status prepare_journals(const PrintJob& job, Prepared& prepared) {
     if (job.journal.empty()) return Done{};
+    if (job.forgets_others) note_others(job.printer, job.journal, prepared.notes);
     return open_journal(job.printer, job.file, job.journal, prepared.journal, prepared.notes);
 }
 

@@ -61,6 +61,7 @@ struct PrintJob {
     // Called once, when all lines are held, and before `before`; from here on threads may be started.
     std::function<void()> begun{};
     std::string journal{};  // its path; empty: none
+    bool forgets_others = false;  // what was cut off beside it takes its height from the head
     std::optional<Resumption> resumption{};
     bool is_lifted = false;  // for the resumption, and at start_mm in x and y: homed
 };

@@ -1,5 +1,7 @@
 #include "target/run/resumption.h"
 
+#include <dirent.h>
+
 #include <algorithm>
 #include <filesystem>
 
@@ -72,6 +74,29 @@ Diagnostic outlived(const Diagnostic& error) {
     return why;
 }
 
+// Those of other prints on this printer, in the same folder as this one.
+std::vector<std::string> journals_beside(const config::Printer& printer, const std::string& path) {
+    std::vector<std::string> found;
+    const std::string folder = path.substr(0, path.rfind('/') + 1);
+    DIR* const entries = ::opendir(folder.empty() ? "." : folder.c_str());
+    if (!entries) return found;
+    while (const dirent* entry = ::readdir(entries)) {
+        std::string there = folder + entry->d_name;
+        // One that nobody writes would be waited for.
+        if (!there.ends_with(".journal") || there == path || entry->d_type == DT_FIFO) continue;
+        if (is_of(printer, read_journal(there))) found.push_back(std::move(there));
+    }
+    ::closedir(entries);
+    return found;
+}
+
+Status forget(const std::string& path) {
+    Result<Journal> journal = Journal::open(path);
+    // One with nothing in it is removed.
+    if (journal) return journal->clear();
+    return journal.error();
+}
+
 }  // namespace
 
 Status open_journal(const config::Printer& printer, const std::string& file,
@@ -93,6 +118,32 @@ Status begin_journal(PrintJournal& opened, const std::optional<Resumption>& resu
         resumption ? opened.journal->write(resumption->entry) : opened.journal->clear();
     if (begun) return begun;
     return outlived(begun.error());
+}
+
+void note_others(const config::Printer& printer, const std::string& path, Diagnostics& notes) {
+    for (std::string& other : journals_beside(printer, path))
+        if (!is_kept(other))
+            notes.push_back({Severity::warning,
+                             ExitStatus::ok,
+                             "a print was cut off that cannot be resumed once this one has moved "
+                             "the head; its journal is removed",
+                             {.file = std::move(other)}});
+}
+
+Status forget_others(const config::Printer& printer, const std::string& path) {
+    for (const std::string& other : journals_beside(printer, path))
+        if (const Status forgotten = forget(other); !forgotten) return outlived(forgotten.error());
+    return Done{};
+}
+
+Status check_none_rests(const config::Printer& printer) {
+    for (const std::string& path : journals_beside(printer, journal_path(printer, "")))
+        return refused(is_kept(path) ? "a print is under way on this printer"
+                                     : "a print was cut off, and --resume takes its height from "
+                                       "where the head stands: resume it, or remove this file "
+                                       "first",
+                       path);
+    return Done{};
 }
 
 std::string journal_path(const config::Printer& printer, const std::string& file) {

@@ -13,8 +13,9 @@
 //  6. open_journal() leaves a journal of another printer as it is, and then opens none. One that nobody can go on from is
 //     replaced. Both are noted. The file is read to its end, which heaters must not wait for.
 //  7. Once a head has moved otherwise, nothing says any more how high it rested. open_journal() is an error (status output)
-//     where one of this printer cannot be written. begin_journal() is for when all else is ready and nothing has moved:
-//     what is there is gone then, or, of a print that resumes, was found to be writable; or it is an error (status output).
+//     where one of this printer cannot be written. begin_journal() and forget_others() are for when all else is ready and
+//     nothing has moved: what is there is gone then, or, of a print that resumes, was found to be writable; or it is an
+//     error (status output).
 
 #pragma once
 
@@ -51,6 +52,13 @@ struct PrintJournal {
 Status open_journal(const config::Printer& printer, const std::string& file,
                     const std::string& path, PrintJournal& opened, Diagnostics& notes);
 Status begin_journal(PrintJournal& opened, const std::optional<Resumption>& resumption);
+
+// Of the journals beside this one, of other prints on this printer.
+void note_others(const config::Printer& printer, const std::string& path, Diagnostics& notes);
+Status forget_others(const config::Printer& printer, const std::string& path);
+
+// Error (status input): in recovery.folder, or else here, lies the journal of a print on this printer that was cut off.
+Status check_none_rests(const config::Printer& printer);
 
 // The printer with the head over where it stopped.
 config::Printer lifted(const config::Printer& printer, const Resumption& resumption);

@@ -146,6 +146,48 @@ TEST_CASE("lyrrun: a print that was refused beside one under way said that it fo
     CHECK(run::find_resumption(*config::read_printer(print.folder / "p.toml"), print.file).ok());
 }
 
+TEST_CASE("lyrrun: the head was moved away from where a print that was cut off had left it") {
+    const CutOff print("moved");
+    const auto with = [&](const std::string& change) {
+        print.folder.write("p.toml", CutOff::printer("recovery.folder = \".\"\n"));
+        CHECK(print.folder.run("sed -i '" + change + "' p.toml").status == 0);
+        fs::copy_file(print.journal, print.folder / "a.lyr.journal",
+                      fs::copy_options::overwrite_existing);
+    };
+    const auto move = [&](const std::string& options) {
+        return print.folder.run("lyrrun --printer p.toml " + options);
+    };
+    // There are no such lines here, which is what all else fails by.
+    const char* rests = "a print was cut off";
+    with("");
+    for (const char* moves : {"--home", "--home x", "--jog x=1", "--jog z=1", "--calibrate mesh"})
+        check_failure(move(moves), "lyrrun", 3, rests);
+    CHECK(move("--jog e=1").err.find("cut off") == std::string::npos);
+    CHECK(move("--home --simulate").status == 0);
+    {
+        const Result<run::Journal> held = run::Journal::open(print.folder / "a.lyr.journal");
+        check_failure(move("--home"), "lyrrun", 3, "a print is under way on this printer");
+    }
+    const Ended other = print.lyrrun("--no-heat --socket s");
+    CHECK(other.err.find("./a.lyr.journal: warning: a print was cut off") != std::string::npos);
+    CHECK(fs::exists(print.folder / "a.lyr.journal"));
+    // Without endstops nothing moves but what is asked for.
+    with("/^endstop/d");
+    check_failure(move("--jog x=1,z=-1"), "lyrrun", 3, rests);
+    CHECK(move("--jog x=1").err.find("cut off") == std::string::npos);
+    with("s/^name.*/name = \"neighbour\"/");
+    CHECK(move("--home").err.find("cut off") == std::string::npos);
+    // A delta finds its height again.
+    const std::string delta = text_of(fs::path(LYR_FIXTURES) / "printers/delta.toml");
+    print.folder.write("p.toml", delta);
+    print.cut({});
+    with("");
+    print.folder.write("p.toml", "recovery.folder = \".\"\n" + delta);
+    CHECK(move("--home").err.find("cut off") == std::string::npos);
+    print.folder.write("p.toml", "recovery.folder = \".\"\nhoming.before_print = false\n" + delta);
+    check_failure(move("--home"), "lyrrun", 3, rests);
+}
+
 TEST_CASE("lyrrun: a print resumes with the next filament after it was cut off without") {
     run::JournalEntry out;
     out.is_unloaded = true;

@@ -270,6 +270,51 @@ TEST_CASE(
     CHECK_FALSE(std::filesystem::exists(job.journal));
 }
 
+TEST_CASE(
+    "print 7: a print left the height at which that of another file had rested on its printer") {
+    config::Printer printer = patient_printer();
+    const auto folder = std::filesystem::temp_directory_path() / "lyr_run_others";
+    std::filesystem::remove_all(folder);
+    std::filesystem::create_directory(folder);
+    printer.recovery_folder = folder;
+    const std::string rested = write_print("rested", {draw_stroke});
+    const std::string elsewhere = write_print("elsewhere", {draw_stroke});
+    config::Printer neighbour = printer;
+    neighbour.name = "neighbour";
+    write_journal(printer, rested, resting_at(7.4));
+    write_journal(neighbour, elsewhere, resting_at(7.4));
+    PrintJob job{write_print("other", {draw_stroke}), printer, true, {}};
+    job.journal = journal_path(printer, job.file);
+    job.forgets_others = true;
+    const std::string journal = journal_path(printer, rested);
+    gpio::MonotonicClock clock;
+    bool has_begun = false;
+    job.before = [&](gpio::GpioChip&, gpio::Clock&, const StopSource&) -> Status {
+        CHECK_FALSE(std::filesystem::exists(journal));
+        has_begun = true;
+        return Done{};
+    };
+    {
+        // One that is being printed, or whose keeper lives on.
+        const Result<Journal> held = Journal::open(journal);
+        gpio::MockChip chip(start_lines, clock, {});
+        const Result<PrintReport> refused = print(job, chip, clock);
+        REQUIRE_FALSE(refused.ok());
+        CHECK(refused.error().message.find("nothing has moved") != std::string::npos);
+        CHECK_FALSE(has_begun);
+        CHECK(find_resumption(printer, rested).ok());
+    }
+    gpio::MockChip chip(start_lines, clock, {});
+    const Result<PrintReport> report = print(job, chip, clock);
+    REQUIRE(report.ok());
+    CHECK(has_begun);
+    REQUIRE_FALSE(report->warnings.empty());
+    CHECK(report->warnings[0].where.file == journal);
+    CHECK(report->warnings[0].message.find("cannot be resumed") != std::string::npos);
+    CHECK(find_resumption(neighbour, elsewhere).ok());
+    std::filesystem::remove_all(folder);
+}
+
 TEST_CASE("inspect 2: a path too slow for the format began to print, and ended in a riddle") {
     const std::string file = write_print("still", {draw_stroke, [](const Pen& pen) {
                                                        pen.path(0.0001);
