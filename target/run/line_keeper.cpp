@@ -96,14 +96,9 @@ void serve(int socket, gpio::GpioChip& chip, int silent_ms) {
 // A write takes microseconds. A keeper that has not answered by then never may: it was stopped, or hangs.
 constexpr timeval longest_answer{1, 0};
 
-// The end of a process that was killed takes no time unless it hangs in the kernel; then nobody may wait for it.
-bool has_ended(pid_t process) {
-    for (int i = 0; i < 100; ++i) {
-        if (::waitpid(process, nullptr, WNOHANG) != 0) return true;
-        ::usleep(1'000);
-    }
-    return false;
-}
+// A process that was killed ends at once, or a little later on a busy board, and lets go of its lines; one that hangs in the
+// kernel may never, and nobody may wait for it for long.
+constexpr int patient_tries = 10, most_tries = 40, try_us = 10'000;
 
 class KeptChip final : public gpio::GpioChip {
 public:
@@ -138,7 +133,7 @@ public:
 private:
     Status ask(const Request& request) {
         Reply reply;
-        if (keeper_ < 0) return lost("is gone");
+        if (keeper_ < 0) return lost(take_lines() ? "is gone" : still_on);
         const bool was_silent = Clock::now() - asked_ > silent_;
         asked_ = Clock::now();
         if (!send_whole(socket_, request) || !receive_whole(socket_, reply))
@@ -150,11 +145,14 @@ private:
     // A keeper that was killed has left its lines as they were, one that hangs holds them so.
     Diagnostic take_over(bool was_silent) {
         ::kill(keeper_, SIGKILL);
-        (void)has_ended(std::exchange(keeper_, -1));
-        Result<std::unique_ptr<gpio::GpioChip>> chip = open_();
-        if (!chip || !(*chip)->write(gpio::all_lines(line_count_), 0))
-            return lost("is gone or hangs, and they may still be on: cut the power now");
-        own_ = std::move(*chip);
+        bool has_ended = false;
+        for (int i = 0; i < most_tries; ++i) {
+            has_ended = has_ended || ::waitpid(keeper_, nullptr, WNOHANG) != 0;
+            if ((has_ended || i >= patient_tries) && take_lines()) break;
+            ::usleep(try_us);
+        }
+        keeper_ = -1;
+        if (!own_) return lost(still_on);
         // Whoever stopped the program, by Ctrl-Z or SIGSTOP, must not look for a fault in the keeper.
         if (was_silent)
             return lost(formatted(
@@ -163,6 +161,18 @@ private:
                 static_cast<long long>(silent_.count() / 1'000)));
         return lost("is gone or hangs; they were taken from it and switched off");
     }
+
+    // All inactive from then on; whoever asks again tries again.
+    bool take_lines() {
+        if (own_) return true;
+        Result<std::unique_ptr<gpio::GpioChip>> chip = open_();
+        if (!chip || !(*chip)->write(gpio::all_lines(line_count_), 0)) return false;
+        own_ = std::move(*chip);
+        return true;
+    }
+
+    static constexpr const char* still_on =
+        "is gone or hangs, and they may still be on: cut the power now";
 
     std::size_t line_count_;
     int socket_;

@@ -245,6 +245,34 @@ TEST_CASE(
     }
 }
 
+TEST_CASE("line keeper 3: lines that came free late were given up after one try") {
+    for (const int refusals : {3, 45}) {
+        CAPTURE(refusals);
+        const KeptLines bench;
+        const pid_t self = ::getpid();
+        int tries = 0;
+        auto chip = keep_lines(
+            2,
+            [&]() -> Result<std::unique_ptr<gpio::GpioChip>> {
+                if (::getpid() == self && ++tries <= refusals)
+                    return Diagnostic{Severity::error, ExitStatus::machine, "busy", {}};
+                return std::unique_ptr<gpio::GpioChip>(std::make_unique<FileChip>(bench.path));
+            },
+            patient_ms);
+        REQUIRE(chip.ok());
+        REQUIRE((*chip)->write(0b11, 0b11).ok());
+        ::kill(bench.keeper(), SIGKILL);
+        const std::string first = (*chip)->write(0b11, 0b01).error().message;
+        const bool is_told = first.find("cut the power") != std::string::npos;
+        CHECK(is_told == (refusals > 40));
+        CHECK(bench.levels() == (is_told ? 3 : 0));
+        // Who ends tries again.
+        while (!(*chip)->write(0b11, 0b01).ok() && bench.levels() != 0) continue;
+        CHECK(bench.levels() == 0);
+        CHECK(tries == refusals + 1);
+    }
+}
+
 TEST_CASE(
     "heating 1: a crash left a heater on that was a kernel PWM channel, where no output was a "
     "line") {
