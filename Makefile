@@ -23,20 +23,19 @@ PREFIX ?= /usr/local
 JOBS   ?= $(shell nproc)
 LYR_BENCH_FILES ?= fixtures/parts
 LYR_BENCH_SET   = --set perimeters.count=3 --set infill.density=15% --set infill.pattern=grid
+CONFIGURE = cmake -S . -B $(BUILD) -DCMAKE_BUILD_TYPE=Release
 # One more than there are processors: some of them wait for most of their time.
 CTEST   = ctest --output-on-failure -j $(shell expr $(JOBS) + 1)
 
-.PHONY: all setup configured test-setup demo test test-bits test-kernel test-kernel-pi test-klipper sanitize tsan board cross \
+.PHONY: all setup test-setup demo test test-bits test-kernel test-kernel-pi test-klipper sanitize tsan board cross \
         test-emulated test-cross bench install clean
 
-all: setup configured
+all: setup
+	$(CONFIGURE)
 	cmake --build $(BUILD) -j $(JOBS) --target stepc lyrrun lyrctl lyrview lyr_format_c
 
 setup:
 	@tools/setup
-
-configured:
-	cmake -S . -B $(BUILD) -DCMAKE_BUILD_TYPE=Release
 
 test-setup:
 	@tools/setup --test
@@ -50,7 +49,8 @@ demo: all
 	$(BUILD)/lyrview demo/gearbox_base.lyr -o demo/gearbox_base.html
 	@echo "The picture: demo/layer-36.svg; the print, in a browser: demo/gearbox_base.html"
 
-test: test-setup configured
+test: test-setup
+	$(CONFIGURE)
 	cmake --build $(BUILD) -j $(JOBS)
 	cd $(BUILD) && $(CTEST)
 

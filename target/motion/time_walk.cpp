@@ -166,6 +166,8 @@ void TimeWalk::fill(double middle, std::size_t count) {
     const double speed = std::max(0.0, seen_.speed * direction_), squared = speed * speed;
     const double twice = 2 * seen_.acceleration * direction_;
     const double sixth = seen_.jerk * direction_ / 6;
+    // At a stop there is no jerk, or the parabola would not be exact there.
+    constexpr double least_speed = std::numeric_limits<double>::min();
     constexpr std::size_t block = 4;
     static_assert(most_ahead % block == 0);
     for (std::size_t from = 0; from < count; from += block)
@@ -173,7 +175,8 @@ void TimeWalk::fill(double middle, std::size_t count) {
             const double here = way + static_cast<double>(from + i);
             const double end_speed = std::sqrt(std::max(0.0, squared + twice * here));
             const double t = 2 * here / (speed + end_speed);
-            found_s_[from + i] = seen_s_ + (t - sixth * t * t * t / end_speed);
+            found_s_[from + i] =
+                seen_s_ + (t - sixth * t * t * t / std::max(end_speed, least_speed));
         }
     given_ = 0;
     found_ = count;

@@ -90,8 +90,7 @@ void Life::serve(const Command& command) {
         if (cut) cut();
         ended_by_ =
             "emergency stop: steps and heaters are off, and the position of the head is lost; " +
-            std::string(journal_ && rest_nm() ? "leave z where it is to go on with --resume, or "
-                                              : "") +
+            std::string(knows_height() ? "leave z where it is to go on with --resume, or " : "") +
             "home the printer before the next print";
         phase_ = Phase::over;
     } else if (std::holds_alternative<Resume>(command)) {
@@ -206,7 +205,8 @@ void Life::heat_again() {
 
 void Life::rest_here() {
     phase_ = Phase::resting;
-    idle_since_s_.fill(now_s_);
+    // What was set by hand a while ago may hold for longer.
+    for (double& idle_s : idle_since_s_) idle_s = std::max(idle_s, now_s_);
 }
 
 void Life::resume() {
@@ -273,7 +273,9 @@ void Life::heated() {
 bool Life::may_leave() {
     if (!journal_) return true;
     if (!std::exchange(departs_, true) || !journal_->is_idle()) return false;
-    if (!journal_->has_failed() || std::exchange(leaves_unnoted_, true)) return true;
+    const bool is_accepted = std::exchange(leaves_unnoted_, false);
+    if (!journal_->has_failed() || is_accepted) return true;
+    leaves_unnoted_ = true;
     hear_of_journal();
     message_ =
         "the journal cannot be written and says for ever that the head is here: resume once more "
@@ -405,8 +407,9 @@ void Life::let_cool() {
     std::array<bool, config::heater_count> standby{};
     for (std::size_t i = 0; i < standby.size(); ++i)
         standby[i] = now_s_ - idle_since_s_[i] >= off_after_s(i);
+    // Filament that is to be drawn out needs it, but not for ever.
     if (phase_ == Phase::braking && changes_filament() && !is_unloaded_)
-        standby[config::heater_tool] = false;
+        standby[config::heater_tool] &= now_s_ - idle_since_s_[config::heater_tool] >= least_held_s;
     if (standby == standby_) return;
     standby_ = standby;
     desk_.set_standby(standby_);

@@ -152,6 +152,8 @@ private:
     void heated();
     bool moves_filament() const;
     bool may_leave();
+    // The journal does, for as long as nobody moves the head.
+    bool knows_height() const;
     bool make(std::span<const Leg> legs, const motion::Point& from);
     // This figure of the tool is what filament needs, or there is none.
     bool is_warm(double HeaterNow::*figure) const;
@@ -193,7 +195,7 @@ private:
     bool heeds_file_ = false;       // rests since the path waits in a pause of its own
     bool resumes_ = false;          // a print that was cut off
     bool departs_ = false;          // from its height: that is noted no more
-    bool leaves_unnoted_ = false;   // as the user has asked for twice
+    bool leaves_unnoted_ = false;   // with the next resume, as the user knows
     bool is_to_unload_ = false;     // once it is known how warm the tool is
     std::array<bool, config::heater_count> standby_{};
     std::optional<double>

@@ -34,6 +34,10 @@ std::optional<std::int64_t> Life::rest_nm() const {
     return std::llround(parked_at_.z * nm_per_mm);
 }
 
+bool Life::knows_height() const {
+    return journal_ && !journal_->has_failed() && phase_ != Phase::lifting && rest_nm();
+}
+
 bool Life::is_on_path() const {
     return course_.started.load() && (phase_ == Phase::printing || phase_ == Phase::braking);
 }

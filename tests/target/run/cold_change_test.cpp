@@ -71,7 +71,26 @@ TEST_CASE(
         }
         if (!is_mended) continue;
         set_out(print);
-        CHECK_FALSE(print.noted().rest_nm);
+        while (!print.writer->is_idle()) std::this_thread::yield();
+        CHECK_FALSE((*read_journal(print.journal))->rest_nm);
+        // The next rest asks again: it was passed over in silence once.
+        print.end_trip();
+        REQUIRE(print.after(13).state == PrintState::printing);
+        print.course.at_rest.store(false);
+        print.after(14);
+        print.after(15, Pause{});
+        print.course.at_rest.store(true);
+        print.after(16);
+        print.end_trip();
+        REQUIRE(print.after(17).state == PrintState::paused);
+        while (!print.writer->is_idle()) std::this_thread::yield();
+        const FullDisk again;
+        print.after(18, Resume{});
+        CHECK(print.heated(19).state == PrintState::paused);
+        CHECK(print.course.trip.load() == nullptr);
+        // And an emergency stop there promises no height that is not on the disk.
+        print.after(20, EmergencyStop{});
+        CHECK(print.life.ended_by()->find("--resume") == std::string::npos);
     }
 }
 
@@ -138,4 +157,41 @@ TEST_CASE("life 3: where a pause lets the tool go cold at once, filament could n
     CHECK_FALSE(print.desk.take().standby[config::heater_tool]);
     print.after(10 + Life::least_held_s + 1);
     CHECK(print.desk.take().standby[config::heater_tool]);
+}
+
+TEST_CASE("life 3: a change of filament that never came to rest kept the tool hot for ever") {
+    Resumed print(true, "never_at_rest");
+    begin_path(print);
+    give_tool(print);
+    tell_tool(print, 205, 210);
+    print.after(3, ChangeFilament{});
+    print.after(3 + print.printer.pause.tool_off_s - 1);
+    CHECK_FALSE(print.desk.take().standby[config::heater_tool]);
+    print.after(3 + print.printer.pause.tool_off_s + 1);
+    CHECK(print.desk.take().standby[config::heater_tool]);
+}
+
+TEST_CASE("life 3: what was set for a change of filament was forgotten when it was drawn out") {
+    Resumed print(true, "set_for_change");
+    begin_path(print);
+    give_tool(print);
+    print.printer.pause.tool_off_s = 0;
+    pause_path(print);
+    print.after(10, SetTemperature{config::heater_tool, 210});
+    tell_tool(print, 205, 210);
+    print.after(60, ChangeFilament{});
+    print.end_trip();
+    print.after(70);
+    print.after(71);
+    CHECK_FALSE(print.desk.take().standby[config::heater_tool]);
+    print.after(10 + Life::least_held_s + 1);
+    CHECK(print.desk.take().standby[config::heater_tool]);
+}
+
+TEST_CASE("life 7: an emergency stop in the lift promised the height from before it") {
+    Resumed print(false, "stopped_in_lift");
+    print.heated(1);
+    REQUIRE(print.course.trip.load() != nullptr);
+    print.after(2, EmergencyStop{});
+    CHECK(print.life.ended_by()->find("--resume") == std::string::npos);
 }
