@@ -215,7 +215,7 @@ def check_terminated(case, waves):
     case.check_status(8)
     check_rest(case, waves["cold"])
     check_slows_down(case, waves["cold"], case.marks["TERM"])
-    case.check_says("already held by lyrrun", "second")
+    case.check_says("another print of this file keeps the journal", "second")
 
 
 def check_killed(case, waves):
