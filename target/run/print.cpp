@@ -152,13 +152,14 @@ void look_after(const Watched& watched, double now_s) {
 // Why it was stopped before its path.
 Diagnostic stopped_before(const Watched& watched) {
     const Life& life = watched.life;
+    const auto trip = watched.shared.trip();
     Diagnostic ended{Severity::error, ExitStatus::stopped, "stopped on request", {}};
-    if (life.is_cancelled())
-        ended.message = "cancelled";
-    else if (life.ended_by())
+    if (trip) ended = diagnostic_of(*trip);
+    if (!trip && life.is_cancelled()) ended.message = "cancelled";
+    // An emergency stop says itself what is lost.
+    if (!trip && !life.is_cancelled() && life.ended_by())
         ended.message = *life.ended_by();
-    if (const auto trip = watched.shared.trip()) ended = diagnostic_of(*trip);
-    if (ended.message.find("is lost") == std::string::npos)
+    else
         ended.message += "; it was homing, and the position of the head is lost";
     ended.message += "; before the path began, all lines are released";
     return ended;
