@@ -14,18 +14,11 @@ MockChip::~MockChip() {
     (void)MockChip::release();
 }
 
-Status MockChip::write(LineMask changed, LineMask levels) {
-    if (released_)
-        return Diagnostic{Severity::error,
-                          ExitStatus::internal,
-                          "a line was written after the lines were released",
-                          {}};
-    if (fault_)
-        if (auto error = fault_(writes_++)) return std::move(*error);
-    changed &= all_lines(line_count_);
-    levels_ = (levels_ & ~changed) | (levels & changed);
-    if (observer_) observer_({clock_.now_ns(), changed, levels_});
-    return Done{};
+Diagnostic MockChip::write_after_release() {
+    return {Severity::error,
+            ExitStatus::internal,
+            "a line was written after the lines were released",
+            {}};
 }
 
 Status MockChip::release() {

@@ -4,11 +4,11 @@
 #include "target/run/executor.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdio>
 
 #include "base/constants.h"
+#include "target/run/executor_loop.h"
 
 namespace lyr::run {
 namespace {
@@ -23,16 +23,6 @@ constexpr std::int64_t standing_ns = 20'000'000;
 // than the slowest axis needs leaves room for both.
 constexpr double braking_margin = 2;
 
-Diagnostic too_late(std::int64_t late_ns, std::int64_t limit_ns) {
-    char text[200];
-    std::snprintf(
-        text, sizeof text,
-        "an edge came %.3f ms late (the limit is pulse.late_limit_ms = %.3f): the printer has "
-        "stopped, and its position is lost; free the processor or lower the speeds",
-        static_cast<double>(late_ns) / 1e6, static_cast<double>(limit_ns) / 1e6);
-    return {Severity::error, ExitStatus::machine, text, {}};
-}
-
 }  // namespace
 
 ExecutorTiming executor_timing(const config::Printer& printer) {
@@ -45,9 +35,15 @@ ExecutorTiming executor_timing(const config::Printer& printer) {
         pulse.late_limit_ns, std::llround(braking_margin * longest_s * ns_per_s)};
 }
 
-Result<bool> Executor::execute(std::span<const LineEvent> events) {
-    return run(events);
-}
+Executor::Executor(gpio::GpioChip& chip, gpio::Clock& clock, ExecutorTiming timing,
+                   const StopRequests& stop_requests, Marks* marks, const WantedPace* wanted_pace)
+    : chip_(chip),
+      clock_(clock),
+      timing_(timing),
+      stop_requests_(stop_requests),
+      marks_(marks),
+      wanted_pace_(wanted_pace),
+      run_(&Executor::run<gpio::GpioChip, gpio::Clock>) {}
 
 void Executor::begin_trip() {
     path_ns_ = last_event_ns_;
@@ -64,36 +60,6 @@ void Executor::end_trip() {
 void Executor::go_on() {
     rebased_ = true;
     pace_ = started_ ? rest_pace : 1;
-}
-
-Result<bool> Executor::run(std::span<const LineEvent> events) {
-    taken_ = 0;
-    for (LineEvent event : events) {
-        if (!started_ && !on_trip_ && target_pace() == 0) return false;
-        if (rebased_) start(event);
-        const gpio::LineMask ended = on_trip_ ? 0 : ended_;
-        const gpio::LineMask falls = ended & ~event.levels;
-        event.levels &= ~ended;
-        const std::int64_t planned_gap_ns = event.time_ns - last_event_ns_;
-        const std::optional<std::int64_t> gap_ns = paced_gap_ns(planned_gap_ns);
-        if (!gap_ns) return rest();
-        const std::int64_t due_ns = last_begin_ns_ + *gap_ns;
-        const std::int64_t allowed_ns =
-            std::max(due_ns, last_end_ns_ + std::min(*gap_ns, timing_.edge_gap_ns));
-        const std::optional<std::int64_t> begin_ns = wait_until_ns(allowed_ns);
-        if (!begin_ns) return rest();
-        const std::int64_t late_ns = *begin_ns - due_ns;
-        worst_late_ns_ = std::max(worst_late_ns_, late_ns);
-        // Only steps move the head: the end of a pulse or a turn that comes late must not slow it down.
-        const bool is_step = (event.levels & ~levels_ & all_step_bits) != 0;
-        if (is_step) stretched_ns_ += late_ns;
-        if (late_ns > timing_.late_limit_ns) return too_late(late_ns, timing_.late_limit_ns);
-        last_begin_ns_ = is_step ? *begin_ns : due_ns;
-        if (((event.levels ^ levels_) & all_mark_bits) && !pass_mark(event)) return rest();
-        if (Status written = write(event, falls); !written) return written.error();
-        ++taken_;
-    }
-    return true;
 }
 
 Result<bool> Executor::rest() {
@@ -116,15 +82,7 @@ void Executor::start(const LineEvent& event) {
     started_ = started_ || !on_trip_;
 }
 
-double Executor::target_pace() const {
-    if (stop_requests_.load(std::memory_order_relaxed) != 0) return 0;
-    if (!wanted_pace_ || on_trip_) return 1;
-    return static_cast<double>(wanted_pace_->load(std::memory_order_relaxed));
-}
-
-std::optional<std::int64_t> Executor::paced_gap_ns(std::int64_t gap_ns) {
-    const double target = target_pace();
-    if (target == 1 && pace_ == 1) return gap_ns;
+std::optional<std::int64_t> Executor::paced_gap_ns(std::int64_t gap_ns, double target) {
     const bool stands = gap_ns > standing_ns;
     if (target == 0) {
         const bool at_once = stop_requests_.load(std::memory_order_relaxed) > 1;
@@ -139,15 +97,6 @@ std::optional<std::int64_t> Executor::paced_gap_ns(std::int64_t gap_ns) {
     pace_ = pace_ > target ? std::max({target, rest_pace, pace_ - change})
                            : std::min(target, pace_ + change);
     return std::llround(paced_ns);
-}
-
-std::optional<std::int64_t> Executor::wait_until_ns(std::int64_t time_ns) {
-    std::int64_t now_ns = last_end_ns_;
-    while (time_ns - now_ns > wait_slice_ns) {
-        if (target_pace() == 0) return std::nullopt;
-        now_ns = clock_.wait_until_ns(now_ns + wait_slice_ns);
-    }
-    return clock_.wait_until_ns(time_ns);
 }
 
 bool Executor::pass_mark(const LineEvent& event) {
@@ -167,27 +116,14 @@ bool Executor::pass_mark(const LineEvent& event) {
     return !at_gate_;
 }
 
-Status Executor::write(const LineEvent& event, gpio::LineMask falls) {
-    const gpio::LineMask toggled = levels_ ^ event.levels;
-    const gpio::LineMask lines = toggled & ~all_mark_bits;
-    const bool is_written = lines != 0 || (toggled == 0 && falls == 0);
-    if (!on_trip_) behind_ns_ = last_begin_ns_ - event.time_ns;
-    Status written = is_written ? chip_.write(lines, event.levels) : Done{};
-    last_end_ns_ = clock_.now_ns();
-    last_event_ns_ = event.time_ns;
-    levels_ = event.levels;
-    ended_ &= ~falls;
-    count(toggled, event.levels);
-    if (is_written) ++writes_;
-    return written;
-}
-
-void Executor::count(gpio::LineMask toggled, gpio::LineMask levels) {
-    StepPositions& positions = on_trip_ ? trip_steps_ : positions_;
-    for (gpio::LineMask rising = toggled & levels & all_step_bits; rising; rising &= rising - 1) {
-        const auto axis = static_cast<std::size_t>(std::countr_zero(rising)) / 2;
-        positions[axis] += (levels & direction_bit(axis)) != 0 ? 1 : -1;
-    }
+Diagnostic Executor::too_late(std::int64_t late_ns) const {
+    char text[200];
+    std::snprintf(
+        text, sizeof text,
+        "an edge came %.3f ms late (the limit is pulse.late_limit_ms = %.3f): the printer has "
+        "stopped, and its position is lost; free the processor or lower the speeds",
+        static_cast<double>(late_ns) / 1e6, static_cast<double>(timing_.late_limit_ns) / 1e6);
+    return {Severity::error, ExitStatus::machine, text, {}};
 }
 
 }  // namespace lyr::run

@@ -18,7 +18,8 @@
 //  6. A failed write ends the print with its diagnostic.
 //  7. At a mark the count of those reached is stored; at a gate no further event is written until as many orders are
 //     done. The time spent there counts as neither time of events nor lateness. Without `marks` both are passed by.
-//  8. Nothing is allocated, locked or logged, and no call is made but wait and write.
+//  8. Nothing is allocated, locked or logged, and no call is made but wait and write. Those are virtual, but of bound():
+//     there they are the chip's and the clock's own, which take less time than such a call.
 //  9. Time runs at the pace that is wanted, a share of the planned one, and follows a new one as evenly as in
 //     braking. A wanted pace of 0 brings the head to rest as 5 does; after go_on() the events from taken() on follow, and
 //     the head gains speed as it lost it. No event is left out or doubled by that; the end of a pulse that was ended
@@ -64,16 +65,20 @@ public:
 
     Executor(gpio::GpioChip& chip, gpio::Clock& clock, ExecutorTiming timing,
              const StopRequests& stop_requests, Marks* marks = nullptr,
-             const WantedPace* wanted_pace = nullptr)
-        : chip_(chip),
-          clock_(clock),
-          timing_(timing),
-          stop_requests_(stop_requests),
-          marks_(marks),
-          wanted_pace_(wanted_pace) {}
+             const WantedPace* wanted_pace = nullptr);
+
+    // Who calls it includes executor_loop.h. The types are the chip's and the clock's own.
+    template <class Chip, class Timer>
+    static Executor bound(Chip& chip, Timer& clock, ExecutorTiming timing,
+                          const StopRequests& stop_requests, Marks* marks,
+                          const WantedPace* wanted_pace) {
+        Executor executor(chip, clock, timing, stop_requests, marks, wanted_pace);
+        executor.run_ = &Executor::run<Chip, Timer>;
+        return executor;
+    }
 
     // True: all written. False: at rest on request; what is left of the events is for after go_on(), or for nobody.
-    Result<bool> execute(std::span<const LineEvent> events);
+    Result<bool> execute(std::span<const LineEvent> events) { return (this->*run_)(events); }
     // Of the last call of execute().
     std::size_t taken() const { return taken_; }
     void go_on();
@@ -100,21 +105,29 @@ public:
     const StepPositions& trip_steps() const { return trip_steps_; }
 
 private:
+    using Run = Result<bool> (Executor::*)(std::span<const LineEvent> events);
+
+    // In executor_loop.h, what is done for each event.
+    template <class Chip, class Timer>
     Result<bool> run(std::span<const LineEvent> events);
-    void start(const LineEvent& event);
-    double target_pace() const;
-    // Clock time between the last event and one `gap_ns` after it, longer while braking; none if the
-    // head is at rest and shall stay there.
-    std::optional<std::int64_t> paced_gap_ns(std::int64_t gap_ns);
     // The time after the wait, or none if it was left on request.
+    template <class Timer>
     std::optional<std::int64_t> wait_until_ns(std::int64_t time_ns);
     // `falls`: the step lines that would end their pulse, if they had not at rest.
+    template <class Chip, class Timer>
     Status write(const LineEvent& event, gpio::LineMask falls);
+    void count(gpio::LineMask toggled, gpio::LineMask levels);
+    double target_pace() const;
+
+    void start(const LineEvent& event);
+    // Clock time between the last event and one `gap_ns` after it, longer while braking; none if the
+    // head is at rest and shall stay there.
+    std::optional<std::int64_t> paced_gap_ns(std::int64_t gap_ns, double target);
     // Ends the pulses that are out. Always false, or what failed.
     Result<bool> rest();
-    void count(gpio::LineMask toggled, gpio::LineMask levels);
     // False: left on request.
     bool pass_mark(const LineEvent& event);
+    Diagnostic too_late(std::int64_t late_ns) const;
 
     gpio::GpioChip& chip_;
     gpio::Clock& clock_;
@@ -122,6 +135,7 @@ private:
     const StopRequests& stop_requests_;
     Marks* marks_;
     const WantedPace* wanted_pace_;
+    Run run_;
     bool started_ = false;  // an event of the path has been written, or is about to
     bool rebased_ = true;   // the next event is the first of its time base
     bool on_trip_ = false;

@@ -1,6 +1,7 @@
 // Reads step and direction lines as a motor driver does: each rising edge of a step line moves the axis
 // by one step in the direction that the direction line has at that moment. Knows nothing of how the
-// edges came about, and so can judge them.
+// edges came about, and so can judge them. What is done for each edge stands here, since there are
+// hundreds of millions in a simulation.
 //
 // Contract
 //  1. Positions count from 0 at the first write; +1 for a rising edge under an active direction line,
@@ -11,9 +12,11 @@
 
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
-#include <functional>
+#include <limits>
 #include <optional>
 
 #include "target/gpio/mock_chip.h"
@@ -41,32 +44,90 @@ struct PulseFigures {
 
 class PulseDecoder {
 public:
-    using Observer = std::function<void(const DecodedStep&)>;
-
-    explicit PulseDecoder(Observer observer) : observer_(std::move(observer)) {}
-    void write(const gpio::LineWrite& write);
+    // `observe` is called with each DecodedStep.
+    template <class Observer>
+    void write(const gpio::LineWrite& write, const Observer& observe);
+    void write(const gpio::LineWrite& line_write) {
+        write(line_write, [](const DecodedStep&) {});
+    }
 
     const StepPositions& positions() const { return positions_; }
-    const PulseFigures& figures(std::size_t axis) const { return axes_[axis].figures; }
+    PulseFigures figures(std::size_t axis) const;
     std::uint64_t writes() const { return writes_; }
 
 private:
+    // So long ago that no interval from there is a shortest one; and the shortest so far where there is none.
+    static constexpr std::int64_t never_ns = std::numeric_limits<std::int64_t>::min() / 4;
+    static constexpr std::int64_t none_ns = std::numeric_limits<std::int64_t>::max() / 8;
+
+    struct Shortest {
+        std::int64_t ns = none_ns;
+        void keep(std::int64_t duration_ns) { ns = std::min(ns, duration_ns); }
+    };
     struct AxisState {
-        PulseFigures figures;
-        std::optional<std::int64_t> rise_ns, fall_ns, turn_ns;
-        bool hold_open = false;  // no turn since the last rise
-        std::optional<bool> last_positive;
+        std::uint64_t steps = 0, reversals = 0;
+        std::int64_t rise_ns = never_ns, fall_ns = never_ns, turn_ns = never_ns;
+        std::int64_t held_from_ns = never_ns;  // the last rise, if there was no turn since
+        std::int64_t longest_interval_ns = -1;
+        Shortest interval, high, low, setup, hold;
+        bool last_positive = false;
     };
 
-    void rise(std::size_t axis, std::int64_t time_ns);
-    void fall(AxisState& state, std::int64_t time_ns);
-    void turn(AxisState& state, std::int64_t time_ns);
+    // Whether that is a step upwards.
+    bool rise(std::size_t axis, std::int64_t time_ns);
+    static void fall(AxisState& state, std::int64_t time_ns) {
+        state.high.keep(time_ns - state.rise_ns);
+        state.fall_ns = time_ns;
+    }
+    static void turn(AxisState& state, std::int64_t time_ns) {
+        state.hold.keep(time_ns - state.held_from_ns);
+        state.held_from_ns = never_ns;
+        state.turn_ns = time_ns;
+    }
 
-    Observer observer_;
     gpio::LineMask levels_ = 0;
     StepPositions positions_{};
     std::array<AxisState, config::axis_count> axes_;
     std::uint64_t writes_ = 0;
 };
+
+template <class Observer>
+void PulseDecoder::write(const gpio::LineWrite& write, const Observer& observe) {
+    const auto axis_of_lowest = [](gpio::LineMask bits) {
+        return static_cast<std::size_t>(std::countr_zero(bits)) / 2;
+    };
+    ++writes_;
+    const gpio::LineMask edges = levels_ ^ write.levels;
+    for (gpio::LineMask steps = edges & all_step_bits; steps; steps &= steps - 1) {
+        const std::size_t axis = axis_of_lowest(steps);
+        if ((write.levels & step_bit(axis)) == 0) {
+            fall(axes_[axis], write.time_ns);
+            continue;
+        }
+        const bool positive = rise(axis, write.time_ns);
+        observe(DecodedStep{write.time_ns, axis, positions_, positive});
+        positions_[axis] += positive ? 1 : -1;
+    }
+    for (gpio::LineMask turns = edges & all_direction_bits; turns; turns &= turns - 1)
+        turn(axes_[axis_of_lowest(turns)], write.time_ns);
+    levels_ = write.levels;
+}
+
+inline bool PulseDecoder::rise(std::size_t axis, std::int64_t time_ns) {
+    AxisState& state = axes_[axis];
+    const bool positive = (levels_ & direction_bit(axis)) != 0;
+    if (state.steps != 0) {
+        const std::int64_t interval_ns = time_ns - state.rise_ns;
+        state.interval.keep(interval_ns);
+        state.longest_interval_ns = std::max(state.longest_interval_ns, interval_ns);
+        if (state.last_positive != positive) ++state.reversals;
+    }
+    state.low.keep(time_ns - state.fall_ns);
+    state.setup.keep(time_ns - state.turn_ns);
+    ++state.steps;
+    state.rise_ns = state.held_from_ns = time_ns;
+    state.last_positive = positive;
+    return positive;
+}
 
 }  // namespace lyr::run

@@ -1,5 +1,5 @@
-// The chain is that of a print; its begin has a thread of its own. At its end the mock's observer decodes the lines and
-// hands each step to the two checks, which have one, too.
+// The chain is that of a print; its begin has a thread of its own. At its end the lines hand each step to the checks, which
+// have one, too.
 
 #include "target/run/simulate.h"
 
@@ -10,12 +10,11 @@
 #include "base/constants.h"
 #include "base/text.h"
 #include "target/gpio/tracing_chip.h"
-#include "target/run/checks_beside.h"
 #include "target/run/demands.h"
 #include "target/run/executor.h"
 #include "target/run/heating.h"
 #include "target/run/life.h"
-#include "target/run/simulated_clock.h"
+#include "target/run/simulated_lines.h"
 #include "target/run/stream_beside.h"
 
 namespace lyr::run {
@@ -81,11 +80,8 @@ public:
                   is_lived() ? heeded_within_ns : std::numeric_limits<std::int64_t>::max()),
           file_(std::move(file)),
           checks_(job.printer, [this](PathCurve& curve) { return file_.next(curve); }),
-          decoder_([this](const DecodedStep& step) { checks_.step(step); }),
           layout_(line_layout(job.printer)),
-          mock_(
-              layout_.names.size(), clock_, [this](const gpio::LineWrite& write) { decode(write); },
-              job.line_faults.motors) {
+          lines_(layout_.names.size(), clock_, checks_, job.line_faults.motors) {
         // Without its switch a heater is cold at once.
         life_.cut = [this] { heat_.release(); };
         life_.hear_of_refusal = [this](const std::string& why) {
@@ -106,12 +102,6 @@ private:
     Status carry_out(Executor& executor, gpio::GpioChip& chip, ReplaceFile* trace);
     Status pump(Executor& executor, ReplaceFile* trace);
     Result<bool> follow(const Portion& portion, Executor& executor);
-    // Waits, rests and what the head does meanwhile are no part of the plan.
-    void decode(const gpio::LineWrite& write) {
-        if (executor_ && executor_->on_trip()) return;
-        const std::int64_t behind_ns = executor_ ? executor_->behind_ns() : 0;
-        decoder_.write({write.time_ns - behind_ns, write.changed, write.levels});
-    }
     bool is_lived() const { return lives(job_); }
     void live(double time_s);
     Diagnostic why_ended() const;
@@ -135,29 +125,32 @@ private:
     std::size_t posted_ = 0, signalled_ = 0;  // of the script and of the signals
     StepPositions trip_steps_{};
     bool is_derailed_ = false;  // a write failed
-    const Executor* executor_ = nullptr;
     StreamBeside stream_;
     std::uint32_t layer_ = 0;
     std::int64_t shift_ns_ = 0, followed_ns_ = 0;  // when the path was done
     FilePath file_;
     ChecksBeside checks_;
-    PulseDecoder decoder_;
     LineLayout layout_;
-    gpio::MockChip mock_;
+    SimulatedLines lines_;
     double print_time_s_ = 0, waited_s_ = 0;
     Diagnostics notes_;  // of the script
 };
 
 Status Simulation::run(ReplaceFile* trace) {
+    gpio::MockChip& mock = lines_.chip();
     std::optional<gpio::TracingChip> tracing;
-    if (trace) tracing.emplace(mock_, clock_, layout_.names, *trace);
-    gpio::GpioChip& chip = tracing ? static_cast<gpio::GpioChip&>(*tracing) : mock_;
-    Executor executor(chip, clock_, executor_timing(job_.printer), control_.stop_requests(),
-                      marked_ ? &marks_ : nullptr, &course_.wanted_pace);
-    executor_ = &executor;
+    if (trace) tracing.emplace(mock, clock_, layout_.names, *trace);
+    const ExecutorTiming timing = executor_timing(job_.printer);
+    const StopRequests& stop_requests = control_.stop_requests();
+    Marks* const marks = marked_ ? &marks_ : nullptr;
+    Executor executor =
+        tracing
+            ? Executor(*tracing, clock_, timing, stop_requests, marks, &course_.wanted_pace)
+            : simulated_executor(mock, clock_, timing, stop_requests, marks, &course_.wanted_pace);
+    gpio::GpioChip& chip = tracing ? static_cast<gpio::GpioChip&>(*tracing) : mock;
+    lines_.belong_to(&executor);
     Status done = carry_out(executor, chip, trace);
-    // What is written from here on is the mock's own.
-    executor_ = nullptr;
+    lines_.belong_to(nullptr);
     if (done && tracing) tracing->finish();
     return done;
 }
@@ -172,7 +165,7 @@ Status Simulation::carry_out(Executor& executor, gpio::GpioChip& chip, ReplaceFi
     print_time_s_ = static_cast<double>(executor.time_ns()) / ns_per_s;
     waited_s_ = static_cast<double>(executor.waited_ns()) / ns_per_s;
     if (!pumped) return pumped;
-    if (Status followed = checks_.finish(decoder_.positions()); !followed) return followed;
+    if (Status followed = checks_.finish(lines_.decoder().positions()); !followed) return followed;
     return chip.release();
 }
 
@@ -243,9 +236,10 @@ SimulationReport Simulation::report() const {
     report.inspection = inspection_;
     report.print_time_s = print_time_s_;
     report.delayed_ns = shift_ns_ - EventStream::driver_wake_ns;
-    for (std::size_t i = 0; i < report.pulses.size(); ++i) report.pulses[i] = decoder_.figures(i);
-    report.positions = decoder_.positions();
-    report.writes = decoder_.writes();
+    for (std::size_t i = 0; i < report.pulses.size(); ++i)
+        report.pulses[i] = lines_.decoder().figures(i);
+    report.positions = lines_.decoder().positions();
+    report.writes = lines_.decoder().writes();
     report.path = checks_.checks().off_file();
     report.planned_steps = checks_.checks().off_plan();
     report.waited_s = waited_s_;

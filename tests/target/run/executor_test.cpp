@@ -330,7 +330,7 @@ TEST_CASE("executor 5: a stop among pulses that overlap waited for a gap that ne
             return 0;
         });
         std::vector<gpio::LineWrite> writes;
-        PulseDecoder decoder({});
+        PulseDecoder decoder;
         gpio::MockChip chip(8, clock, [&](const gpio::LineWrite& write) {
             writes.push_back(write);
             decoder.write(write);
@@ -358,7 +358,7 @@ TEST_CASE("executor 9: rests among pulses that overlap lose and double no step")
         if (time_ns > next_ns) pace = 0;
         return 0;
     });
-    PulseDecoder decoder({});
+    PulseDecoder decoder;
     gpio::MockChip chip(8, clock, [&](const gpio::LineWrite& write) { decoder.write(write); });
     Executor executor(chip, clock, {25'000, 5'000'000, 60'000'000}, stop, nullptr, &pace);
     std::span<const LineEvent> left(motors.events);

@@ -26,22 +26,24 @@ std::vector<LineEvent> schedule_all(const std::vector<Step>& steps, PulseSchedul
 
 struct Decoded {
     std::vector<Step> steps;
-    PulseDecoder decoder{[this](const DecodedStep& step) {
-        steps.push_back({step.time_ns, static_cast<std::uint8_t>(step.axis), step.positive});
-    }};
+    PulseDecoder decoder;
 };
 
 void decode(const std::vector<LineEvent>& events, Decoded& decoded) {
     gpio::LineMask before = 0;
     for (const LineEvent& event : events) {
-        decoded.decoder.write({event.time_ns, before ^ event.levels, event.levels});
+        decoded.decoder.write(
+            {event.time_ns, before ^ event.levels, event.levels}, [&](const DecodedStep& step) {
+                decoded.steps.push_back(
+                    {step.time_ns, static_cast<std::uint8_t>(step.axis), step.positive});
+            });
         before = event.levels;
     }
 }
 
 void check_times_of_driver(const PulseDecoder& decoder) {
     for (std::size_t i = 0; i < config::axis_count; ++i) {
-        const PulseFigures& figures = decoder.figures(i);
+        const PulseFigures figures = decoder.figures(i);
         if (figures.shortest_high_ns) CHECK(*figures.shortest_high_ns >= driver_timing.high_ns);
         if (figures.shortest_low_ns) CHECK(*figures.shortest_low_ns >= driver_timing.low_ns);
         if (figures.shortest_setup_ns)
@@ -191,7 +193,7 @@ TEST_CASE("schedule: appended in pieces of any size it gives the same events") {
 }
 
 TEST_CASE("decoder 3: figures are the extremes of what was written") {
-    PulseDecoder decoder({});
+    PulseDecoder decoder;
     const auto write = [&](std::int64_t time_ns, gpio::LineMask levels) {
         decoder.write({time_ns, ~gpio::LineMask{0}, levels});
     };
@@ -204,7 +206,7 @@ TEST_CASE("decoder 3: figures are the extremes of what was written") {
     write(6'000, 0);
     write(6'050, step_bit(1));
     write(9'000, 0);
-    const PulseFigures& figures = decoder.figures(1);
+    const PulseFigures figures = decoder.figures(1);
     CHECK(figures.steps == 3);
     CHECK(figures.reversals == 1);
     CHECK(decoder.positions()[1] == 1);
@@ -218,7 +220,7 @@ TEST_CASE("decoder 3: figures are the extremes of what was written") {
 }
 
 TEST_CASE("decoder 2: a direction that changes with the step comes too late for it") {
-    PulseDecoder decoder({});
+    PulseDecoder decoder;
     decoder.write({10, ~gpio::LineMask{0}, step_bit(0) | direction_bit(0)});
     CHECK(decoder.positions()[0] == -1);
     CHECK(decoder.figures(0).shortest_hold_ns == 0);

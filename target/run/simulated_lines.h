@@ -1,0 +1,41 @@
+// The lines of a simulation: mock lines whose writes are decoded, and whose steps go to the checks. And the executor that
+// writes them, bound to their types: what is done for each edge is made without a call.
+//
+// Contract
+//  1. While the executor is on a trip nothing is decoded. Waits, rests and what the head does meanwhile are no part of the
+//     plan: times are those of the path's events.
+
+#pragma once
+
+#include "target/gpio/mock_chip.h"
+#include "target/run/checks_beside.h"
+#include "target/run/executor.h"
+#include "target/run/pulse_decoder.h"
+#include "target/run/simulated_clock.h"
+
+namespace lyr::run {
+
+class SimulatedLines {
+public:
+    SimulatedLines(std::size_t line_count, const SimulatedClock& clock, ChecksBeside& checks,
+                   gpio::MockChip::Fault fault);
+
+    gpio::MockChip& chip() { return chip_; }
+    // Whose writes these are; none: the chip's own, which are made when it is released.
+    void belong_to(const Executor* executor) { executor_ = executor; }
+    const PulseDecoder& decoder() const { return decoder_; }
+
+private:
+    void decode(const gpio::LineWrite& write);
+
+    ChecksBeside& checks_;
+    PulseDecoder decoder_;
+    const Executor* executor_ = nullptr;
+    gpio::MockChip chip_;
+};
+
+Executor simulated_executor(gpio::MockChip& chip, SimulatedClock& clock, ExecutorTiming timing,
+                            const StopRequests& stop_requests, Marks* marks,
+                            const WantedPace* wanted_pace);
+
+}  // namespace lyr::run
