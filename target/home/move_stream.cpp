@@ -28,8 +28,7 @@ bool MoveStream::next(std::vector<run::LineEvent>& events) {
     begun_ = true;
     const std::size_t count = generator_.next(steps_);
     single_.clear();
-    for (const motion::StepEvent& step : std::span(steps_).first(count))
-        run::append_steps(step, single_);
+    run::append_steps(std::span(steps_).first(count), single_);
     schedule_.append(single_, events);
     (void)schedule_.take_shifts();  // nobody asks for them
     if (count == steps_.size()) return true;

@@ -43,7 +43,7 @@ Instant Instant::after(double time_s) const {
 }
 
 MotorFunction::MotorFunction(const Taps& taps, bool in_space) : in_space_(in_space) {
-    for (const Tap& tap : taps) cursors_.push_back({tap, 0, 0});
+    for (const Tap& tap : taps) cursors_.push_back({tap});
 }
 
 MotorFunction MotorFunction::sum(const Taps& taps, double start_steps) {
@@ -128,6 +128,7 @@ bool MotorFunction::add(Cursor& cursor, const MoveWindow& window, const Instant&
         }
         ++cursor.move;
         cursor.phase = 0;
+        cursor.place.is_known = false;
     }
 }
 
@@ -140,8 +141,10 @@ void MotorFunction::add_rest(const Tap& tap, const ChannelValues& at) {
 void MotorFunction::add_moving(Cursor& cursor, const ChannelMove& move, double since_s) {
     const auto& phases = move.profile.phases;
     while (cursor.phase + 1 < phases.size() &&
-           phases[cursor.phase + 1].time_s - since_s <= instant_s)
+           phases[cursor.phase + 1].time_s - since_s <= instant_s) {
         ++cursor.phase;
+        cursor.place.is_known = false;
+    }
     const Phase& phase = phases[cursor.phase];
     const bool is_last = cursor.phase + 1 == phases.size();
     const double left_s =
@@ -163,7 +166,7 @@ void MotorFunction::add_moving(Cursor& cursor, const ChannelMove& move, double s
                                      slope * speed, slope * half_acceleration, slope * sixth_jerk);
     }
     if (!move.turns || (weights[axis_x] == 0 && weights[axis_y] == 0)) return;
-    add_turn(cursor.tap, move, distance_mm,
+    add_turn(cursor, move, distance_mm,
              {move.rate * speed, move.rate * half_acceleration, move.rate * sixth_jerk});
     // The speed of a phase is highest at one of its ends, or it has no jerk.
     const double end_speed = speed + left_s * (2 * half_acceleration + left_s * 3 * sixth_jerk);
@@ -171,26 +174,47 @@ void MotorFunction::add_moving(Cursor& cursor, const ChannelMove& move, double s
     if (fastest > 0) end_no_later_than(Smooth::largest_turn_rad / fastest);
 }
 
-// The circle's point at the distance as a chord from its start, as in path.cpp; from there on, the turn.
-void MotorFunction::add_turn(const Tap& tap, const ChannelMove& move, double distance_mm,
-                             const TurnAngle& angle) {
-    const double turned_rad = move.rate * distance_mm;
-    const double half_rad = turned_rad / 2;
+// As a chord from the start, as in path.cpp.
+MotorFunction::OnCircle MotorFunction::place_on(const ChannelMove& move, double turned_rad) {
+    const double half_rad = turned_rad / 2, angle_rad = move.start_angle_rad + turned_rad;
     const double chord_mm = 2 * move.radius_mm * std::sin(half_rad);
     const double chord_angle_rad = move.start_angle_rad + half_rad;
-    const double x_mm = move.start.x - chord_mm * std::sin(chord_angle_rad);
-    const double y_mm = move.start.y + chord_mm * std::cos(chord_angle_rad);
-    const double sine = move.radius_mm * std::sin(move.start_angle_rad + turned_rad);
-    const double cosine = move.radius_mm * std::cos(move.start_angle_rad + turned_rad);
-    const double wx = tap.weights[axis_x], wy = tap.weights[axis_y];
+    return {turned_rad,
+            move.start.x - chord_mm * std::sin(chord_angle_rad),
+            move.start.y + chord_mm * std::cos(chord_angle_rad),
+            move.radius_mm * std::sin(angle_rad),
+            move.radius_mm * std::cos(angle_rad),
+            true};
+}
+
+// A phase has few pieces: what they round adds up to less than a place that is found anew.
+void MotorFunction::turn_on(OnCircle& place, double turned_rad) {
+    const auto [sine, versine] = Smooth::turned(turned_rad - place.turned_rad);
+    const double along_x = -place.sine_mm, along_y = place.cosine_mm;
+    place.turned_rad = turned_rad;
+    place.x_mm += along_x * sine - along_y * versine;
+    place.y_mm += along_y * sine + along_x * versine;
+    place.sine_mm += along_y * sine + along_x * versine;
+    place.cosine_mm += along_x * sine - along_y * versine;
+}
+
+void MotorFunction::add_turn(Cursor& cursor, const ChannelMove& move, double distance_mm,
+                             const TurnAngle& angle) {
+    OnCircle& place = cursor.place;
+    if (place.is_known)
+        turn_on(place, move.rate * distance_mm);
+    else
+        place = place_on(move, move.rate * distance_mm);
+    const double sine = place.sine_mm, cosine = place.cosine_mm;
+    const double wx = cursor.tap.weights[axis_x], wy = cursor.tap.weights[axis_y];
     if (in_space_) {
-        smooth_[axis_x].add_constant(wx * x_mm);
-        smooth_[axis_y].add_constant(wy * y_mm);
+        smooth_[axis_x].add_constant(wx * place.x_mm);
+        smooth_[axis_y].add_constant(wy * place.y_mm);
         if (wx != 0) smooth_[axis_x].add_turn({angle, -wx * sine, -wx * cosine});
         if (wy != 0) smooth_[axis_y].add_turn({angle, wy * cosine, -wy * sine});
         return;
     }
-    smooth_[0].add_constant(wx * x_mm + wy * y_mm);
+    smooth_[0].add_constant(wx * place.x_mm + wy * place.y_mm);
     smooth_[0].add_turn({angle, wy * cosine - wx * sine, -wx * cosine - wy * sine});
 }
 
@@ -265,6 +289,16 @@ Sample MotorFunction::at(double time_s) const {
             steps_per_mm_ * z.acceleration};
 }
 
+Series MotorFunction::series(double time_s) const {
+    if (!in_space_) {
+        Series series = smooth_[0].series(time_s);
+        series[0] -= start_;
+        return series;
+    }
+    const Sample sample = at(time_s);
+    return {sample.position, sample.speed, sample.acceleration / 2, 0, 0, 0};
+}
+
 // g = sqrt(q), q = arm^2 - |p|^2, p the way from the tower.
 Sample MotorFunction::height_over_head(const Sample& x, const Sample& y) const {
     const double px = x.position - tower_->x_mm, py = y.position - tower_->y_mm;
@@ -284,7 +318,8 @@ void MotorFunction::limit_jerk() {
         const Bounds own = smooth_[0].bounds(duration_s_);
         least_jerk_ = own.least_jerk;
         most_jerk_ = own.most_jerk;
-        most_snap_ = own.snap;
+        constexpr double factorial_of_6 = 720;
+        remainder_ = {0, own.sixth / factorial_of_6};
         return;
     }
     std::array<Bounds, 3> bounds;
@@ -292,7 +327,8 @@ void MotorFunction::limit_jerk() {
     const double lift = bed_ ? lift_jerk(bounds) : 0, above = tower_ ? jerk_over_head(bounds) : 0;
     most_jerk_ = std::abs(steps_per_mm_) * (bounds[axis_z].jerk() + lift + above);
     least_jerk_ = -most_jerk_;
-    most_snap_ = std::numeric_limits<double>::infinity();
+    constexpr double factorial_of_3 = 6;
+    remainder_ = {most_jerk_ / factorial_of_3, 0};
 }
 
 // Of the root: g g' = q'/2, g g'' = q''/2 - g'^2, g g''' = q'''/2 - 3 g' g''.

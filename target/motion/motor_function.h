@@ -9,7 +9,7 @@
 // Contract
 //  1. Pieces follow each other without gaps and end where a phase of a copy ends, where an arc has turned
 //     by Smooth::largest_turn_rad, where the head leaves a cell of the mesh, or where nothing is known of the plan yet.
-//  2. at() is exact to rounding within the piece; bounds() hold there.
+//  2. at() is exact to rounding within the piece; least_jerk() to most_jerk() holds there, and remainder() for series().
 
 #pragma once
 
@@ -52,10 +52,11 @@ public:
     double duration_s() const { return duration_s_; }
     // Since the begin of the piece.
     Sample at(double time_s) const;
+    // Taylor's about that time; of a motor in space it ends with the square.
+    Series series(double time_s) const;
     double least_jerk() const { return least_jerk_; }
     double most_jerk() const { return most_jerk_; }
-    // Of the fourth derivative; infinite where at() has no third.
-    double most_snap() const { return most_snap_; }
+    const Remainder& remainder() const { return remainder_; }
 
     // The first move that any cursor still needs.
     std::uint64_t oldest_move() const;
@@ -65,10 +66,18 @@ public:
     std::int64_t behind_ns() const;
 
 private:
+    // A place on the circle of an arc: a turn goes on from where it was, by the angle since.
+    struct OnCircle {
+        double turned_rad = 0;
+        double x_mm = 0, y_mm = 0;
+        double sine_mm = 0, cosine_mm = 0;  // of the angle on the circle, times its radius
+        bool is_known = false;
+    };
     struct Cursor {
         Tap tap;
         std::uint64_t move = 0;
         std::size_t phase = 0;
+        OnCircle place{};
     };
 
     // How far a cell of the mesh goes on beyond its bounds, so that rounding at them is no crossing.
@@ -79,8 +88,10 @@ private:
     bool add(Cursor& cursor, const MoveWindow& window, const Instant& begin);
     void add_rest(const Tap& tap, const ChannelValues& at);
     void add_moving(Cursor& cursor, const ChannelMove& move, double since_s);
-    void add_turn(const Tap& tap, const ChannelMove& move, double distance_mm,
+    void add_turn(Cursor& cursor, const ChannelMove& move, double distance_mm,
                   const TurnAngle& angle);
+    static OnCircle place_on(const ChannelMove& move, double turned_rad);
+    static void turn_on(OnCircle& place, double turned_rad);
     Smooth& smooth_of(std::size_t channel) { return smooth_[in_space_ ? channel : 0]; }
     void stay_in_cell();
     Sample lift_at(const std::array<Sample, 3>& at) const;
@@ -99,7 +110,8 @@ private:
     std::optional<MeshCell> cell_;
     double steps_per_mm_ = 1, start_ = 0;
     std::array<Smooth, 3> smooth_;
-    double duration_s_ = 0, least_jerk_ = 0, most_jerk_ = 0, most_snap_ = 0;
+    double duration_s_ = 0, least_jerk_ = 0, most_jerk_ = 0;
+    Remainder remainder_;
 };
 
 }  // namespace lyr::motion

@@ -35,37 +35,58 @@ double sum(const std::array<double, 9>& c, double q) {
     return low + (high + c[8] * q4) * q4;
 }
 
+// A turn at a time: its way so far, the angle's derivatives, each by its factorial, and the turn seen from there.
+struct TurnState {
+    double way, rate, half_acceleration, sixth_jerk;
+    double ahead, inward;
+};
+
+TurnState state_of(const Turn& turn, double time) {
+    const TurnAngle& a = turn.angle;
+    if (time == 0) return {0, a.rate, a.half_acceleration, a.sixth_jerk, turn.ahead, turn.inward};
+    const double angle = time * (a.rate + time * (a.half_acceleration + time * a.sixth_jerk));
+    const auto [sine, versine] = Smooth::turned(angle);
+    const double cosine = 1 - versine;
+    return {turn.ahead * sine + turn.inward * versine,
+            a.rate + time * (2 * a.half_acceleration + time * 3 * a.sixth_jerk),
+            a.half_acceleration + 3 * a.sixth_jerk * time,
+            a.sixth_jerk,
+            turn.ahead * cosine + turn.inward * sine,
+            turn.inward * cosine - turn.ahead * sine};
+}
+
 }  // namespace
 
-void Smooth::add(const Turn& turn, double time, Sample& sample) {
-    const TurnAngle& a = turn.angle;
-    const double jerk = 6 * a.sixth_jerk;
-    if (time == 0) {
-        const double acceleration = 2 * a.half_acceleration, squared = a.rate * a.rate;
-        sample.speed += turn.ahead * a.rate;
-        sample.acceleration += turn.ahead * acceleration + turn.inward * squared;
-        sample.jerk +=
-            turn.ahead * (jerk - squared * a.rate) + turn.inward * 3 * a.rate * acceleration;
-        return;
-    }
-    const double angle = time * (a.rate + time * (a.half_acceleration + time * a.sixth_jerk));
-    const double rate = a.rate + time * (2 * a.half_acceleration + time * 3 * a.sixth_jerk);
-    const double acceleration = 2 * a.half_acceleration + jerk * time;
-    const double squared = rate * rate;
+SineVersine Smooth::turned(double angle) {
     const double q = angle * angle;
-    const double sine = angle * sum(sine_series, q);
-    const double versine = q * sum(versine_series, q);
-    const double cosine = 1 - versine;
-    const double along = turn.ahead * cosine + turn.inward * sine;
-    const double across = turn.inward * cosine - turn.ahead * sine;
-    sample.position += turn.ahead * sine + turn.inward * versine;
-    sample.speed += along * rate;
-    sample.acceleration += along * acceleration + across * squared;
-    sample.jerk += along * (jerk - squared * rate) + across * 3 * rate * acceleration;
+    return {angle * sum(sine_series, q), q * sum(versine_series, q)};
+}
+
+void Smooth::add(const Turn& turn, double time, Sample& sample) {
+    const TurnState at = state_of(turn, time);
+    sample.position += at.way;
+    sample.speed += at.ahead * at.rate;
+    sample.acceleration += at.ahead * 2 * at.half_acceleration + at.inward * at.rate * at.rate;
+}
+
+// Of ahead sin(d) + inward (1 - cos(d)), where d is the angle since then: both up to its fifth power, each sorted by
+// powers of the time.
+void Smooth::add(const Turn& turn, double time, Series& series) {
+    const TurnState at = state_of(turn, time);
+    const double a1 = at.rate, a2 = at.half_acceleration, a3 = at.sixth_jerk;
+    const double a11 = a1 * a1, a12 = a1 * a2, a13 = a1 * a3;
+    series[0] += at.way;
+    series[1] += at.ahead * a1;
+    series[2] += at.ahead * a2 + at.inward * (a11 * (1. / 2));
+    series[3] += at.ahead * (a3 - a11 * a1 * (1. / 6)) + at.inward * a12;
+    series[4] += at.inward * (a2 * a2 * (1. / 2) + a13 - a11 * a11 * (1. / 24)) -
+                 at.ahead * (a11 * a2 * (1. / 2));
+    series[5] += at.ahead * (a11 * a11 * a1 * (1. / 120) - (a12 * a2 + a13 * a1) * (1. / 2)) +
+                 at.inward * (a2 * a3 - a11 * a12 * (1. / 6));
 }
 
 // Of an angle that does not turn back, the rate is largest at one of the ends, unless its acceleration
-// changes sign between them; the sum of sizes covers that.
+// changes sign between them; the sum of sizes covers that. The sixth derivative is Bell's polynomial of the angle's three.
 Bounds Smooth::bounds(double time) const {
     Bounds bounds{std::abs(c_[1]) + time * (2 * std::abs(c_[2]) + time * 3 * std::abs(c_[3])),
                   2 * std::abs(c_[2]) + 6 * std::abs(c_[3]) * time, 6 * c_[3], 6 * c_[3]};
@@ -84,8 +105,9 @@ Bounds Smooth::bounds(double time) const {
         const double jerk = size * (rate * rate * rate + 3 * rate * acceleration + 6 * sixth);
         bounds.least_jerk -= jerk;
         bounds.most_jerk += jerk;
-        bounds.snap += size * (rate * rate * (rate * rate + 6 * acceleration) +
-                               3 * acceleration * acceleration + 24 * rate * sixth);
+        const double r2 = rate * rate, a2 = acceleration * acceleration, j = 6 * sixth;
+        bounds.sixth += size * (r2 * (r2 * (r2 + 15 * acceleration) + 20 * rate * j + 45 * a2) +
+                                60 * rate * acceleration * j + 15 * acceleration * a2 + 10 * j * j);
     }
     return bounds;
 }

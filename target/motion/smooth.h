@@ -7,6 +7,8 @@
 //  2. leaves() is when the position first comes within `nearly` of one of two bounds it lies between, or the time given
 //     if that is earlier. It may be early (a position that creeps along a bound), never late.
 //  3. bounds() holds for all times from 0 to the one given, as long as no angle turns back.
+//  4. series() is Taylor's about the time: the function differs from it by less than the remainder at all times within
+//     the bounds'.
 
 #pragma once
 
@@ -17,13 +19,26 @@
 namespace lyr::motion {
 
 struct Sample {
-    double position = 0, speed = 0, acceleration = 0, jerk = 0;
+    double position = 0, speed = 0, acceleration = 0;
 };
 
-// The largest sizes of the derivatives, snap being the fourth, and between what the third one lies.
+// By powers of the time since some instant.
+using Series = std::array<double, 6>;
+
+// What a series leaves out after a time is below its cube, and its sixth power, times these.
+struct Remainder {
+    double by_cube = 0, by_sixth = 0;
+
+    double at(double time) const {
+        const double cube = std::abs(time * time * time);
+        return cube * (by_cube + cube * by_sixth);
+    }
+};
+
+// The largest sizes of the derivatives, and between what the third one lies.
 struct Bounds {
     double speed = 0, acceleration = 0;
-    double least_jerk = 0, most_jerk = 0, snap = 0;
+    double least_jerk = 0, most_jerk = 0, sixth = 0;
 
     double jerk() const { return std::fmax(std::abs(least_jerk), std::abs(most_jerk)); }
 };
@@ -37,6 +52,11 @@ struct Turn {
     TurnAngle angle;
     double ahead = 0;   // times the angle's sine
     double inward = 0;  // times 1 - its cosine
+};
+
+// 1 - cos() loses no digits.
+struct SineVersine {
+    double sine = 0, versine = 0;
 };
 
 class Smooth {
@@ -59,16 +79,28 @@ public:
 
     Sample at(double time) const {
         Sample sample{c_[0] + time * (c_[1] + time * (c_[2] + time * c_[3])),
-                      c_[1] + time * (2 * c_[2] + time * 3 * c_[3]), 2 * c_[2] + 6 * c_[3] * time,
-                      6 * c_[3]};
+                      c_[1] + time * (2 * c_[2] + time * 3 * c_[3]), 2 * c_[2] + 6 * c_[3] * time};
         for (std::size_t i = 0; i < turn_count_; ++i) add(turns_[i], time, sample);
         return sample;
     }
+    Series series(double time) const {
+        Series series{c_[0] + time * (c_[1] + time * (c_[2] + time * c_[3])),
+                      c_[1] + time * (2 * c_[2] + time * 3 * c_[3]),
+                      c_[2] + 3 * c_[3] * time,
+                      c_[3],
+                      0,
+                      0};
+        for (std::size_t i = 0; i < turn_count_; ++i) add(turns_[i], time, series);
+        return series;
+    }
     Bounds bounds(double time) const;
     double leaves(double low, double high, double nearly, double time) const;
+    // Of |angle| <= largest_turn_rad.
+    static SineVersine turned(double angle);
 
 private:
     static void add(const Turn& turn, double time, Sample& sample);
+    static void add(const Turn& turn, double time, Series& series);
 
     std::array<double, 4> c_{};
     std::array<Turn, most_turns> turns_;

@@ -16,6 +16,21 @@ int sign_of(double value) {
     return value > 0 ? 1 : value < 0 ? -1 : 0;
 }
 
+// From the series' begin on: rounding is that of the way then, not of the position.
+double way_of(const Series& c, double t) {
+    return t * (c[1] + t * (c[2] + t * (c[3] + t * (c[4] + t * c[5]))));
+}
+
+double speed_of(const Series& c, double t) {
+    return c[1] + t * (2 * c[2] + t * (3 * c[3] + t * (4 * c[4] + t * 5 * c[5])));
+}
+
+// The most that the second derivative of the series can be within that time, halved.
+double half_acceleration_of(const Series& c, double t) {
+    return std::abs(c[2]) +
+           t * (3 * std::abs(c[3]) + t * (6 * std::abs(c[4]) + t * 10 * std::abs(c[5])));
+}
+
 }  // namespace
 
 void TimeWalk::start(const MotorFunction& function, std::int64_t count) {
@@ -24,12 +39,13 @@ void TimeWalk::start(const MotorFunction& function, std::int64_t count) {
     least_jerk_ = function.least_jerk();
     most_jerk_ = function.most_jerk();
     jerk_ = std::max(std::abs(least_jerk_), std::abs(most_jerk_));
-    snap_ = function.most_snap();
+    remainder_ = function.remainder();
     low_s_ = high_s_ = seen_s_ = passed_s_ = 0;
     given_ = found_ = 0;
-    seen_ = high_ = function.at(0);
+    seen_ = function.series(0);
+    high_ = {seen_[0], seen_[1], 2 * seen_[2]};
     last_ = function.at(duration_s_);
-    begin_ = end_ = seen_.position;
+    begin_ = end_ = high_.position;
     direction_ = 0;
 }
 
@@ -51,8 +67,7 @@ bool TimeWalk::next_stretch(const MotorFunction& function) {
         if (keeps_sign(low, high, h)) {
             if (same_way) break;
             high_s_ = high_s;
-            seen_ = low;
-            high_s = turning_s(function, high);
+            high_s = turning_s(function, low, high);
             high = function.at(high_s);
             high.speed = 0;
             break;
@@ -62,8 +77,8 @@ bool TimeWalk::next_stretch(const MotorFunction& function) {
     }
     high_s_ = high_s;
     high_ = high;
-    seen_s_ = passed_s_ = low_s_;
-    seen_ = low;
+    if (seen_s_ != low_s_) look(function, low_s_);
+    passed_s_ = low_s_;
     begin_ = low.position;
     end_ = high.position;
     direction_ = sign_of(end_ - begin_);
@@ -99,11 +114,12 @@ bool TimeWalk::keeps_sign(const Sample& low, const Sample& high, double h) const
 }
 
 // The one root of the speed in the stretch, by Newton's steps within halvings.
-double TimeWalk::turning_s(const MotorFunction& function, const Sample& high) const {
+double TimeWalk::turning_s(const MotorFunction& function, const Sample& low,
+                           const Sample& high) const {
     double low_s = low_s_, high_s = high_s_;
     const int rising = sign_of(high.speed);
-    double at_s = low_s + (high_s - low_s) * std::abs(seen_.speed) /
-                              (std::abs(seen_.speed) + std::abs(high.speed));
+    double at_s = low_s + (high_s - low_s) * std::abs(low.speed) /
+                              (std::abs(low.speed) + std::abs(high.speed));
     for (int look = 0; look < most_looks; ++look) {
         const Sample sample = function.at(at_s);
         (sign_of(sample.speed) == rising ? high_s : low_s) = at_s;
@@ -116,15 +132,11 @@ double TimeWalk::turning_s(const MotorFunction& function, const Sample& high) co
     return at_s;
 }
 
-double TimeWalk::next_s(const MotorFunction& function) {
+double TimeWalk::sought_s(const MotorFunction& function) {
     for (;;) {
-        if (given_ < found_) {
-            count_ += direction_;
-            return passed_s_ = found_s_[given_++];
-        }
         const double middle = static_cast<double>(count_) + direction_ / 2.0;
         if (direction_ != 0 && (motor_at(end_) - middle) * direction_ > touch_steps) {
-            if (find_ahead(function, middle)) continue;
+            if (find_ahead(function, middle)) return next_s(function);
             count_ += direction_;
             return passed_s_ = solve_s(function, function_at(middle));
         }
@@ -132,89 +144,100 @@ double TimeWalk::next_s(const MotorFunction& function) {
     }
 }
 
-// Where the last of some steps is exact the ones before are: all bounds of errors grow with the time. Found together, they
-// do not wait for each other's roots and quotients.
+void TimeWalk::look(const MotorFunction& function, double time_s) {
+    seen_s_ = time_s;
+    seen_ = function.series(time_s);
+}
+
+// Where the last of some steps is not exact, fewer are tried, from the step before on.
 bool TimeWalk::find_ahead(const MotorFunction& function, double middle) {
     const double left = std::ceil((end_ - middle) * direction_ - touch_steps);
     if (play_.steps != 0 || left < 2) return false;
-    const auto most = static_cast<std::size_t>(std::min(left, static_cast<double>(ahead_)));
-    std::size_t count = exact_count(middle, most);
-    if (count < most && count < few_ahead && seen_s_ < passed_s_) {
-        seen_s_ = passed_s_;
-        seen_ = function.at(passed_s_);
-        count = exact_count(middle, most);
+    int count = static_cast<int>(std::min(left, static_cast<double>(ahead_)));
+    while (count >= 2) {
+        const Root last = root(middle + direction_ * (count - 1));
+        const double last_s = seen_s_ + last.time_s;
+        if (last.is_exact && last_s > passed_s_ && last_s <= high_s_ && fill(middle, count, last))
+            break;
+        if (seen_s_ < passed_s_)
+            look(function, passed_s_);
+        else
+            count /= 2;
     }
-    ahead_ = std::clamp(2 * count, few_ahead, most_ahead);
-    if (count < 2) return false;
-    fill(middle, count);
+    constexpr int few = 4;
+    ahead_ = std::clamp(2 * count, few, most_ahead);
+    return count >= 2;
+}
+
+// What may be off, in steps, is what the series leaves out and what is left by Newton's step: half the acceleration times
+// the square of that, by the speed. The loop has no branch, so that two or more are solved at a time.
+bool TimeWalk::fill(double middle, int count, const Root& last) {
+    const Series& c = seen_;
+    const double from_s = passed_s_ - seen_s_, time_s = last.time_s - from_s;
+    const double from = way_of(c, from_s), from_speed = speed_of(c, from_s);
+    if (!(from_speed * direction_ > 0)) return false;
+    const double first = middle - c[0], way = first + direction_ * (count - 1) - from;
+    const double slow_s = way / from_speed, fast_s = way / (last.speed * direction_);
+    const double square_s = 3 * time_s - 2 * slow_s - fast_s, cube_s = slow_s + fast_s - 2 * time_s;
+    const double left_out = remainder_.at(std::max(std::abs(from_s), std::abs(last.time_s)));
+    const double half = half_acceleration_of(c, std::abs(from_s) + 2 * time_s);
+    constexpr double may_be_off_s = 0.75 * exact_s;
+    const double per_step = 1 / way;
+    constexpr int block = 4;
+    static_assert(most_ahead % block == 0);
+    std::array<double, block> too_far{};
+    const auto if_positive = [](double x) { return x + std::abs(x); };
+    for (int i = 0; i < count; i += block)
+        for (int k = 0; k < block; ++k) {
+            const double sought = first + direction_ * std::min(i + k, count - 1);
+            const double u = (sought - from) * per_step;
+            const double since_s = u * (slow_s + u * (square_s + u * cube_s));
+            const double t = from_s + since_s, speed = speed_of(c, t) * direction_;
+            const double change_s = (way_of(c, t) - sought) * direction_ / speed;
+            found_s_[static_cast<std::size_t>(i + k)] = seen_s_ + (t - change_s);
+            const double off = change_s * change_s * half + left_out - may_be_off_s * speed;
+            too_far[static_cast<std::size_t>(k)] +=
+                if_positive(off) + if_positive(std::abs(since_s) - 2 * time_s);
+        }
+    for (const double far : too_far)
+        if (!(far <= 0)) return false;
+    given_ = 0;
+    found_ = count;
     return true;
 }
 
-std::size_t TimeWalk::exact_count(double middle, std::size_t most) const {
-    const double way = (middle - seen_.position) * direction_;
-    if (way <= 0) return 0;
-    std::size_t count = most;
-    for (; count >= 2; count /= 2) {
-        const Root last = root(way + static_cast<double>(count - 1));
-        if (last.is_exact && seen_s_ + last.change_s <= high_s_) break;
+TimeWalk::Root TimeWalk::root(double middle) const {
+    const Series& c = seen_;
+    const double sought = middle - c[0], way = sought * direction_;
+    const double speed = std::max(0.0, c[1] * direction_);
+    const double end_speed = std::sqrt(std::max(0.0, speed * speed + 4 * c[2] * sought));
+    Root root{2 * way / (speed + end_speed)};
+    constexpr int most_steps = 5;
+    for (int step = 0; step < most_steps; ++step) {
+        root.speed = speed_of(c, root.time_s) * direction_;
+        const double change_s = (way_of(c, root.time_s) - sought) * direction_ / root.speed;
+        root.time_s -= change_s;
+        if (!(std::abs(change_s) <= exact_s / 4)) continue;
+        root.is_exact = remainder_.at(root.time_s) <= exact_s / 2 * root.speed;
+        break;
     }
-    return count;
-}
-
-void TimeWalk::fill(double middle, std::size_t count) {
-    const double way = (middle - seen_.position) * direction_;
-    const double speed = std::max(0.0, seen_.speed * direction_), squared = speed * speed;
-    const double twice = 2 * seen_.acceleration * direction_;
-    const double sixth = seen_.jerk * direction_ / 6;
-    // At a stop there is no jerk, or the parabola would not be exact there.
-    constexpr double least_speed = std::numeric_limits<double>::min();
-    constexpr std::size_t block = 4;
-    static_assert(most_ahead % block == 0);
-    for (std::size_t from = 0; from < count; from += block)
-        for (std::size_t i = 0; i < block; ++i) {
-            const double here = way + static_cast<double>(from + i);
-            const double end_speed = std::sqrt(std::max(0.0, squared + twice * here));
-            const double t = 2 * here / (speed + end_speed);
-            found_s_[from + i] =
-                seen_s_ + (t - sixth * t * t * t / std::max(end_speed, least_speed));
-        }
-    given_ = 0;
-    found_ = count;
-}
-
-// Of the parabola through the point looked at last or, where that is not exact, by a step of Newton's from there on to the
-// cubic's, with the parabola's speed. Half of exact_s is left for the speed, which hardly changes within it.
-TimeWalk::Root TimeWalk::root(double way) const {
-    const double speed = std::max(0.0, seen_.speed * direction_);
-    const double a = seen_.acceleration * direction_, j = seen_.jerk * direction_;
-    const double end_speed = std::sqrt(std::max(0.0, speed * speed + 2 * a * way));
-    const double change_s = 2 * way / (speed + end_speed);
-    const double t = std::abs(change_s), squared = t * t;
-    if (jerk_ * squared * t <= 3 * exact_s * end_speed) return {change_s, true};
-    if (snap_ == std::numeric_limits<double>::infinity()) return {change_s, false};
-    const double shift_s = j / 6 * change_s * squared / end_speed, h = std::abs(shift_s);
-    const double reach_s = t + h, faster = std::abs(j) * squared / 2;
-    const double off = h * faster + h * h / 2 * (std::abs(a) + std::abs(j) * reach_s) +
-                       snap_ / 24 * reach_s * reach_s * reach_s * reach_s;
-    return {change_s - shift_s, off <= exact_s / 2 * (end_speed - faster)};
+    return root;
 }
 
 double TimeWalk::solve_s(const MotorFunction& function, double middle) {
     double low_s = passed_s_, high_s = high_s_;
-    for (int look = 0; look < most_looks; ++look) {
-        const double way = (middle - seen_.position) * direction_;
+    for (int looks = 0; looks < most_looks; ++looks) {
         // Reached already: left open by the stretch before.
-        if (way <= 0 && seen_s_ <= low_s) return low_s;
-        const Root found = root(way);
-        double next_s = seen_s_ + found.change_s;
+        if ((middle - seen_[0]) * direction_ <= 0 && seen_s_ <= low_s) return low_s;
+        const Root found = root(middle);
+        double next_s = seen_s_ + found.time_s;
         if (!(next_s >= low_s && next_s <= high_s))
             next_s = (low_s + high_s) / 2;
         else if (found.is_exact)
             return next_s;
         if (high_s - low_s < exact_s) return next_s;
-        seen_s_ = next_s;
-        seen_ = function.at(next_s);
-        ((middle - seen_.position) * direction_ > 0 ? low_s : high_s) = next_s;
+        look(function, next_s);
+        ((middle - seen_[0]) * direction_ > 0 ? low_s : high_s) = next_s;
     }
     return high_s;
 }

@@ -5,11 +5,10 @@
 //   the acceleration keeps its sign, by its values at the ends and the bounds: there is at most one
 //   turning point, which is looked for.
 // Otherwise it is halved. On a stretch that only rises or only falls each middle between two steps is
-// passed once. Its time is the root of the parabola through the last point looked at, off by less than
-// J t^3 / (6 speed); where that is too much, a step of Newton's from there to the root of the cubic, off by what that
-// step leaves and by S t^4 / (24 speed), S being a bound of the fourth derivative. Where that is too much as well, a new
-// point is looked at. All these bounds grow with t, so where they hold for one step they hold for those before it:
-// several are found together.
+// passed once. Its time is the root of the function's series about the point looked at last, by Newton's steps from that of
+// the parabola; where the series' remainder would be too much, a new point is looked at. Many middles are solved together:
+// the first guess is then the cubic through the time and the speed at both ends of them, and one step of Newton's is
+// enough, or they are fewer.
 //
 // Contract
 //  1. Times come in ascending order, within exact_s of the root of the function.
@@ -51,44 +50,51 @@ public:
     void start(const MotorFunction& function, std::int64_t count);
 
     // Takes the next step and returns its time since the begin of the piece, or no_step_s.
-    double next_s(const MotorFunction& function);
+    double next_s(const MotorFunction& function) {
+        if (given_ == found_) return sought_s(function);
+        count_ += direction_;
+        return passed_s_ = found_s_[static_cast<std::size_t>(given_++)];
+    }
     // Of the step taken last: +1 or -1.
     int direction() const { return direction_; }
 
 private:
+    double sought_s(const MotorFunction& function);
     bool next_stretch(const MotorFunction& function);
     void take_up();
     // Where the function is when the motor passes a middle, and the other way round.
     double function_at(double middle) const;
     double motor_at(double position) const;
     bool keeps_sign(const Sample& low, const Sample& high, double h) const;
-    double turning_s(const MotorFunction& function, const Sample& high) const;
+    double turning_s(const MotorFunction& function, const Sample& low, const Sample& high) const;
+    void look(const MotorFunction& function, double time_s);
     // The times of some steps from this middle on, or false: the next one has to be looked for alone.
     bool find_ahead(const MotorFunction& function, double middle);
-    std::size_t exact_count(double middle, std::size_t most) const;
-    void fill(double middle, std::size_t count);
-    // How long after the point looked at last the motor is so many steps further.
+    // Since the point looked at last.
     struct Root {
-        double change_s;
-        bool is_exact;
+        double time_s = 0, speed = 0;
+        bool is_exact = false;
     };
-    Root root(double way) const;
+    Root root(double middle) const;
+    // From the step before until the last one of these. False: not exact.
+    bool fill(double middle, int count, const Root& last);
     double solve_s(const MotorFunction& function, double middle);
 
     Play play_;
     double begin_ = 0;  // of the stretch, where play_.ahead is what it was
     std::int64_t count_ = 0;
-    double duration_s_ = 0, least_jerk_ = 0, most_jerk_ = 0, jerk_ = 0, snap_ = 0;
+    double duration_s_ = 0, least_jerk_ = 0, most_jerk_ = 0, jerk_ = 0;
+    Remainder remainder_;
     int direction_ = 0;                 // in the stretch; 0: stands still
     double low_s_ = 0, high_s_ = 0;     // of the stretch
     double end_ = 0;                    // its position there
     double seen_s_ = 0, passed_s_ = 0;  // of the last point looked at, of the last step
-    Sample seen_, last_;                // there, and at the end of the piece
-    Sample high_;
+    Series seen_{};                     // about the former
+    Sample high_, last_;                // at the ends of the stretch and of the piece
     // Found ahead and not given yet, and how many to look for next time.
-    static constexpr std::size_t few_ahead = 4, most_ahead = 16;
+    static constexpr int most_ahead = 32;
     std::array<double, most_ahead> found_s_;
-    std::size_t given_ = 0, found_ = 0, ahead_ = few_ahead;
+    int given_ = 0, found_ = 0, ahead_ = most_ahead;
 };
 
 }  // namespace lyr::motion

@@ -18,8 +18,8 @@
 //  6. A failed write ends the print with its diagnostic.
 //  7. At a mark the count of those reached is stored; at a gate no further event is written until as many orders are
 //     done. The time spent there counts as neither time of events nor lateness. Without `marks` both are passed by.
-//  8. Nothing is allocated, locked or logged, and no call is made but wait and write. Those are virtual, but of bound():
-//     there they are the chip's and the clock's own, which take less time than such a call.
+//  8. Nothing is allocated, locked or logged, and no call is made but wait and write. Those calls are virtual; after
+//     bind() they are the types' own, which may take less time than a call.
 //  9. Time runs at the pace that is wanted, a share of the planned one, and follows a new one as evenly as in
 //     braking. A wanted pace of 0 brings the head to rest as 5 does; after go_on() the events from taken() on follow, and
 //     the head gains speed as it lost it. No event is left out or doubled by that; the end of a pulse that was ended
@@ -67,14 +67,10 @@ public:
              const StopRequests& stop_requests, Marks* marks = nullptr,
              const WantedPace* wanted_pace = nullptr);
 
-    // Who calls it includes executor_loop.h. The types are the chip's and the clock's own.
+    // The chip and the clock are of these types. Who calls it includes executor_loop.h.
     template <class Chip, class Timer>
-    static Executor bound(Chip& chip, Timer& clock, ExecutorTiming timing,
-                          const StopRequests& stop_requests, Marks* marks,
-                          const WantedPace* wanted_pace) {
-        Executor executor(chip, clock, timing, stop_requests, marks, wanted_pace);
-        executor.run_ = &Executor::run<Chip, Timer>;
-        return executor;
+    void bind() {
+        run_ = &Executor::run<Chip, Timer>;
     }
 
     // True: all written. False: at rest on request; what is left of the events is for after go_on(), or for nobody.

@@ -44,12 +44,13 @@ std::int64_t MotorSteps::tail_ns() const {
     return timed ? timed->tail_ns() : 0;
 }
 
-void append_steps(const motion::StepEvent& event, std::vector<Step>& steps) {
-    for (unsigned motors = event.motors; motors; motors &= motors - 1) {
-        const int motor = std::countr_zero(motors);
-        steps.push_back(
-            {event.time_ns, static_cast<std::uint8_t>(motor), (event.positive >> motor & 1) != 0});
-    }
+void append_steps(std::span<const motion::StepEvent> events, std::vector<Step>& steps) {
+    for (const motion::StepEvent& event : events)
+        for (unsigned motors = event.motors; motors; motors &= motors - 1) {
+            const int motor = std::countr_zero(motors);
+            steps.push_back({event.time_ns, static_cast<std::uint8_t>(motor),
+                             (event.positive >> motor & 1) != 0});
+        }
 }
 
 }  // namespace lyr::run

@@ -32,6 +32,6 @@ private:
 };
 
 // One for each motor that moves.
-void append_steps(const motion::StepEvent& event, std::vector<Step>& steps);
+void append_steps(std::span<const motion::StepEvent> events, std::vector<Step>& steps);
 
 }  // namespace lyr::run

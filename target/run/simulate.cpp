@@ -137,18 +137,13 @@ private:
 };
 
 Status Simulation::run(ReplaceFile* trace) {
-    gpio::MockChip& mock = lines_.chip();
     std::optional<gpio::TracingChip> tracing;
-    if (trace) tracing.emplace(mock, clock_, layout_.names, *trace);
-    const ExecutorTiming timing = executor_timing(job_.printer);
-    const StopRequests& stop_requests = control_.stop_requests();
-    Marks* const marks = marked_ ? &marks_ : nullptr;
-    Executor executor =
-        tracing
-            ? Executor(*tracing, clock_, timing, stop_requests, marks, &course_.wanted_pace)
-            : simulated_executor(mock, clock_, timing, stop_requests, marks, &course_.wanted_pace);
-    gpio::GpioChip& chip = tracing ? static_cast<gpio::GpioChip&>(*tracing) : mock;
+    if (trace) tracing.emplace(lines_.chip(), clock_, layout_.names, *trace);
+    gpio::GpioChip& chip = tracing ? static_cast<gpio::GpioChip&>(*tracing) : lines_.chip();
+    Executor executor(chip, clock_, executor_timing(job_.printer), control_.stop_requests(),
+                      marked_ ? &marks_ : nullptr, &course_.wanted_pace);
     lines_.belong_to(&executor);
+    if (!tracing) lines_.bind(executor);
     Status done = carry_out(executor, chip, trace);
     lines_.belong_to(nullptr);
     if (done && tracing) tracing->finish();

@@ -11,17 +11,15 @@ SimulatedLines::SimulatedLines(std::size_t line_count, const SimulatedClock& clo
           line_count, clock, [this](const gpio::LineWrite& write) { decode(write); },
           std::move(fault)) {}
 
+void SimulatedLines::bind(Executor& executor) {
+    executor.bind<gpio::MockChip, SimulatedClock>();
+}
+
 void SimulatedLines::decode(const gpio::LineWrite& write) {
     if (executor_ && executor_->on_trip()) return;
     const std::int64_t behind_ns = executor_ ? executor_->behind_ns() : 0;
     decoder_.write({write.time_ns - behind_ns, write.changed, write.levels},
                    [this](const DecodedStep& step) { checks_.step(step); });
-}
-
-Executor simulated_executor(gpio::MockChip& chip, SimulatedClock& clock, ExecutorTiming timing,
-                            const StopRequests& stop_requests, Marks* marks,
-                            const WantedPace* wanted_pace) {
-    return Executor::bound(chip, clock, timing, stop_requests, marks, wanted_pace);
 }
 
 }  // namespace lyr::run

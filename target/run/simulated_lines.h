@@ -1,5 +1,5 @@
-// The lines of a simulation: mock lines whose writes are decoded, and whose steps go to the checks. And the executor that
-// writes them, bound to their types: what is done for each edge is made without a call.
+// The lines of a simulation: mock lines whose writes are decoded, and whose steps go to the checks. What is done for each
+// edge, the executor's part included, is made here without a virtual call.
 //
 // Contract
 //  1. While the executor is on a trip nothing is decoded. Waits, rests and what the head does meanwhile are no part of the
@@ -23,6 +23,8 @@ public:
     gpio::MockChip& chip() { return chip_; }
     // Whose writes these are; none: the chip's own, which are made when it is released.
     void belong_to(const Executor* executor) { executor_ = executor; }
+    // To this chip and the clock, of an executor that writes on them itself.
+    static void bind(Executor& executor);
     const PulseDecoder& decoder() const { return decoder_; }
 
 private:
@@ -33,9 +35,5 @@ private:
     const Executor* executor_ = nullptr;
     gpio::MockChip chip_;
 };
-
-Executor simulated_executor(gpio::MockChip& chip, SimulatedClock& clock, ExecutorTiming timing,
-                            const StopRequests& stop_requests, Marks* marks,
-                            const WantedPace* wanted_pace);
 
 }  // namespace lyr::run

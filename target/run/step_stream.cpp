@@ -86,8 +86,7 @@ bool StepStream::finish(std::vector<Step>& steps) {
 
 std::size_t StepStream::take(std::size_t most, std::vector<Step>& steps) {
     const std::size_t count = generator_.next(std::span(events_).first(most));
-    for (const motion::StepEvent& event : std::span(events_).first(count))
-        append_steps(event, steps);
+    append_steps(std::span(events_).first(count), steps);
     if (count > 0) last_ns_ = events_[count - 1].time_ns;
     return count;
 }

@@ -27,8 +27,7 @@ void drain(MotorSteps& generator, std::vector<Step>& steps) {
     std::array<motion::StepEvent, 256> events;
     for (std::size_t count = events.size(); count == events.size();) {
         count = generator.next(events);
-        for (const motion::StepEvent& event : std::span(events).first(count))
-            append_steps(event, steps);
+        append_steps(std::span(events).first(count), steps);
     }
 }
 

@@ -32,7 +32,8 @@ Edges all_edges(const config::Printer& machine, const std::vector<motion::Move>&
     std::vector<run::Step> steps;
     const auto take = [&] {
         motion::StepEvent event;
-        while (generator.next(std::span(&event, 1)) == 1) run::append_steps(event, steps);
+        while (generator.next(std::span(&event, 1)) == 1)
+            run::append_steps(std::span(&event, 1), steps);
     };
     for (motion::PlannedMove planned; planner->pop(planned); take()) generator.start(planned);
     generator.finish();
