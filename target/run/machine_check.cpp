@@ -58,24 +58,15 @@ MachineCheck::MachineCheck(const config::Printer& printer, CurveSource source)
     : machine_(moves::kinematics_of(printer)),
       shaped_(moves::is_shaped(printer)),
       source_(std::move(source)),
-      plan_(printer) {
+      timed_(printer) {
     for (std::size_t i = 0; i < steps_per_mm_.size(); ++i)
         steps_per_mm_[i] = printer.axes[i].steps_per_mm;
-    for (std::size_t i = 0; i < printer.backlash_mm.size(); ++i)
-        play_steps_[i] = printer.backlash_mm[i] * steps_per_mm_[i];
 }
 
 void MachineCheck::expect(std::span<const motion::PlannedMove> moves,
                           std::span<const Shift> shifts) {
-    for (const motion::PlannedMove& move : moves) {
-        compare_path(move);
-        plan_.append(move);
-        for (int look = 1; look <= looks_per_move; ++look)
-            looks_ns_.push_back(
-                move.start_ns + plan_.lead_ns() +
-                std::llround(move.profile.duration_s * 1e9 * look / looks_per_move));
-    }
-    shifts_.insert(shifts_.end(), shifts.begin(), shifts.end());
+    for (const motion::PlannedMove& move : moves) compare_path(move);
+    timed_.expect(moves, shifts);
 }
 
 void MachineCheck::compare_path(const motion::PlannedMove& move) {
@@ -130,26 +121,8 @@ void MachineCheck::stretch(const motion::Point& at) {
                          way_mm(rows, {steps_mm[0], second * steps_mm[1], third * steps_mm[2]}));
 }
 
-void MachineCheck::step(const DecodedStep& step) {
-    while (!shifts_.empty() && shifts_.front().from_ns <= step.time_ns) {
-        shift_ns_ = shifts_.front().shift_ns;
-        shifts_.pop_front();
-    }
-    const std::int64_t planned_ns = step.time_ns - shift_ns_;
-    look_until(planned_ns, step.before);
-    const std::int64_t before = step.before[step.axis];
-    const std::int64_t after = before + (step.positive ? 1 : -1);
-    const double planned_steps = planned(step.axis, planned_ns);
-    measure(step.axis, planned_steps, before);
-    at_steps_[step.axis] = carried_steps(step.axis, after);
-    measure(step.axis, planned_steps, after);
-    plan_.forget_before(planned_ns);
-}
-
 Status MachineCheck::finish(const StepPositions& positions) {
-    if (!plan_.empty() && !looks_ns_.empty())
-        looks_ns_.push_back(looks_ns_.back() + plan_.reach_ns());
-    look_until(std::numeric_limits<std::int64_t>::max(), positions);
+    timed_.finish(positions);
     PathCurve curve;
     const Result<bool> more = source_(curve);
     if (!more) return more.error();
@@ -157,36 +130,15 @@ Status MachineCheck::finish(const StepPositions& positions) {
     return status_;
 }
 
-void MachineCheck::look_until(std::int64_t time_ns, const StepPositions& positions) {
-    for (; !looks_ns_.empty() && looks_ns_.front() < time_ns; looks_ns_.pop_front())
-        for (std::size_t motor = 0; motor < positions.size(); ++motor)
-            measure(motor, planned(motor, looks_ns_.front()), positions[motor]);
-}
-
-// A rising motor pushes the axis `play` behind it, a falling one pulls it along.
-double MachineCheck::carried_steps(std::size_t motor, std::int64_t position) const {
-    const auto at = static_cast<double>(position);
-    return std::clamp(at_steps_[motor], at - play_steps_[motor], at);
-}
-
-double MachineCheck::planned(std::size_t motor, std::int64_t time_ns) {
-    return plan_.empty() ? infinity : plan_.motor_steps(motor, time_ns);
-}
-
-void MachineCheck::measure(std::size_t motor, double planned_steps, std::int64_t position) {
-    const double off_steps = std::abs(planned_steps - carried_steps(motor, position));
-    // Not the other way round: what is not a number must show.
-    if (!(off_steps <= off_plan_[motor])) off_plan_[motor] = off_steps;
-}
-
 Deviation MachineCheck::off_file() const {
     Deviation off = path_;
     if (shaped_) return off;
+    const AxisValues& off_plan = timed_.off_plan();
     for (std::size_t i = 0; i < off.steps.size(); ++i) {
-        off.steps[i] += off_plan_[i];
+        off.steps[i] += off_plan[i];
         off.worst_steps = std::max(off.worst_steps, off.steps[i]);
     }
-    off.distance_mm += mm_per_step_ * *std::max_element(off_plan_.begin(), off_plan_.end() - 1);
+    off.distance_mm += mm_per_step_ * *std::max_element(off_plan.begin(), off_plan.end() - 1);
     return off;
 }
 

@@ -23,8 +23,10 @@ ShapedPlan::ShapedPlan(const config::Printer& printer) : machine_(moves::kinemat
     const motion::Shaping shaping = moves::shaping_of(printer);
     bed_ = shaping.bed;
     const motion::Point origin{printer.start_mm[0], printer.start_mm[1], printer.start_mm[2]};
-    const bool is_corexy = std::holds_alternative<motion::CoreXy>(machine_);
-    const bool mixes_all = bed_ || std::holds_alternative<motion::Delta>(machine_);
+    mixes_all_ = bed_ || std::holds_alternative<motion::Delta>(machine_);
+    shares_ = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    if (std::holds_alternative<motion::CoreXy>(machine_))
+        shares_ = {{{1, 1, 0}, {1, -1, 0}, {0, 0, 1}}};
     std::int64_t ahead_ns = 0, behind_ns = 0;
     for (std::size_t i = 0; i < motion::axis_count; ++i) {
         steps_per_mm_[i] = printer.axes[i].steps_per_mm;
@@ -36,13 +38,8 @@ ShapedPlan::ShapedPlan(const config::Printer& printer) : machine_(moves::kinemat
         }
         axes_.emplace_back(std::move(copies));
     }
-    for (std::size_t motor = 0; motor < depends_.size(); ++motor) {
+    for (std::size_t motor = 0; motor < origin_mm_.size(); ++motor)
         origin_mm_[motor] = carried_mm(motor, origin);
-        for (std::size_t axis = 0; axis < depends_.size(); ++axis)
-            depends_[motor][axis] =
-                mixes_all || motor == axis ||
-                (is_corexy && motor != motion::axis_z && axis != motion::axis_z);
-    }
     lead_ns_ = ahead_ns;
     reach_ns_ = ahead_ns + behind_ns;
 }
@@ -57,9 +54,10 @@ void ShapedPlan::append(const motion::PlannedMove& move) {
     if (presses) pressed_mm_ += advance_mm;
 }
 
-void ShapedPlan::forget_before(std::int64_t time_ns) {
+void ShapedPlan::forget_pieces_before(std::int64_t time_ns) {
     while (pieces_.size() > 1 && pieces_[1].move.start_ns < time_ns - reach_ns_)
         pieces_.pop_front();
+    kept_until_ns_ = pieces_.size() > 1 ? pieces_[1].move.start_ns + reach_ns_ : time_ns;
 }
 
 double ShapedPlan::carried_mm(std::size_t motor, const motion::Point& at) const {
@@ -75,14 +73,9 @@ double ShapedPlan::carried_mm(std::size_t motor, const motion::Point& at) const 
     return motor == motion::axis_x ? at.x + at.y : at.x - at.y;
 }
 
-double ShapedPlan::motor_steps(std::size_t motor, std::int64_t time_ns) {
-    const std::int64_t plan_ns = time_ns - lead_ns_;
-    if (motor == motion::extruder_motor)
-        return steps_per_mm_[motor] * shaped_mm(motion::axis_e, plan_ns);
-    const auto along = [&](std::size_t axis) {
-        return depends_[motor][axis] ? shaped_mm(axis, plan_ns) : 0;
-    };
-    const motion::Point at{along(motion::axis_x), along(motion::axis_y), along(motion::axis_z)};
+double ShapedPlan::mixed_steps(std::size_t motor, std::int64_t plan_ns) {
+    const motion::Point at{shaped_mm(motion::axis_x, plan_ns), shaped_mm(motion::axis_y, plan_ns),
+                           shaped_mm(motion::axis_z, plan_ns)};
     return steps_per_mm_[motor] * (carried_mm(motor, at) - origin_mm_[motor]);
 }
 
