@@ -41,7 +41,6 @@ void TimeWalk::start(const MotorFunction& function, std::int64_t count) {
     jerk_ = std::max(std::abs(least_jerk_), std::abs(most_jerk_));
     remainder_ = function.remainder();
     low_s_ = high_s_ = seen_s_ = passed_s_ = 0;
-    given_ = found_ = 0;
     seen_ = function.series(0);
     high_ = {seen_[0], seen_[1], 2 * seen_[2]};
     last_ = function.at(duration_s_);
@@ -132,15 +131,21 @@ double TimeWalk::turning_s(const MotorFunction& function, const Sample& low,
     return at_s;
 }
 
-double TimeWalk::sought_s(const MotorFunction& function) {
+std::span<const double> TimeWalk::next_s(const MotorFunction& function) {
     for (;;) {
         const double middle = static_cast<double>(count_) + direction_ / 2.0;
         if (direction_ != 0 && (motor_at(end_) - middle) * direction_ > touch_steps) {
-            if (find_ahead(function, middle)) return next_s(function);
-            count_ += direction_;
-            return passed_s_ = solve_s(function, function_at(middle));
+            int found = find_ahead(function, middle);
+            if (found == 0) {
+                found_s_[0] = solve_s(function, function_at(middle));
+                found = 1;
+            }
+            count_ += direction_ * found;
+            const auto times_s = std::span(found_s_).first(static_cast<std::size_t>(found));
+            passed_s_ = times_s.back();
+            return times_s;
         }
-        if (!next_stretch(function)) return no_step_s;
+        if (!next_stretch(function)) return {};
     }
 }
 
@@ -150,9 +155,9 @@ void TimeWalk::look(const MotorFunction& function, double time_s) {
 }
 
 // Where the last of some steps is not exact, fewer are tried, from the step before on.
-bool TimeWalk::find_ahead(const MotorFunction& function, double middle) {
+int TimeWalk::find_ahead(const MotorFunction& function, double middle) {
     const double left = std::ceil((end_ - middle) * direction_ - touch_steps);
-    if (play_.steps != 0 || left < 2) return false;
+    if (play_.steps != 0 || left < 2) return 0;
     int count = static_cast<int>(std::min(left, static_cast<double>(ahead_)));
     while (count >= 2) {
         const Root last = root(middle + direction_ * (count - 1));
@@ -165,8 +170,8 @@ bool TimeWalk::find_ahead(const MotorFunction& function, double middle) {
             count /= 2;
     }
     constexpr int few = 4;
-    ahead_ = std::clamp(2 * count, few, most_ahead);
-    return count >= 2;
+    ahead_ = std::clamp(2 * count, few, most_steps);
+    return count >= 2 ? count : 0;
 }
 
 // What may be off, in steps, is what the series leaves out and what is left by Newton's step: half the acceleration times
@@ -184,7 +189,7 @@ bool TimeWalk::fill(double middle, int count, const Root& last) {
     constexpr double may_be_off_s = 0.75 * exact_s;
     const double per_step = 1 / way;
     constexpr int block = 4;
-    static_assert(most_ahead % block == 0);
+    static_assert(most_steps % block == 0);
     std::array<double, block> too_far{};
     const auto if_positive = [](double x) { return x + std::abs(x); };
     for (int i = 0; i < count; i += block)
@@ -201,8 +206,6 @@ bool TimeWalk::fill(double middle, int count, const Root& last) {
         }
     for (const double far : too_far)
         if (!(far <= 0)) return false;
-    given_ = 0;
-    found_ = count;
     return true;
 }
 

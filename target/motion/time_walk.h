@@ -20,6 +20,7 @@
 
 #include <array>
 #include <limits>
+#include <span>
 
 #include "target/motion/motor_function.h"
 
@@ -42,24 +43,20 @@ public:
     // Above the rounding of a sum of copies at 1e5 steps, far below what a motor can show.
     static constexpr double touch_steps = 1e-8;
     static constexpr double exact_s = 1e-10;
-    static constexpr double no_step_s = std::numeric_limits<double>::infinity();
 
     explicit TimeWalk(double play_steps = 0) : play_{play_steps} {}
 
     // A new piece of the function; the motor stands at `count`.
     void start(const MotorFunction& function, std::int64_t count);
 
-    // Takes the next step and returns its time since the begin of the piece, or no_step_s.
-    double next_s(const MotorFunction& function) {
-        if (given_ == found_) return sought_s(function);
-        count_ += direction_;
-        return passed_s_ = found_s_[static_cast<std::size_t>(given_++)];
-    }
-    // Of the step taken last: +1 or -1.
+    // Takes the next steps, all the same way, and returns their times since the begin of the piece, which are valid until
+    // the next call; none: it ends.
+    std::span<const double> next_s(const MotorFunction& function);
+    static constexpr int most_steps = 32;
+    // Of the steps taken last: +1 or -1.
     int direction() const { return direction_; }
 
 private:
-    double sought_s(const MotorFunction& function);
     bool next_stretch(const MotorFunction& function);
     void take_up();
     // Where the function is when the motor passes a middle, and the other way round.
@@ -68,8 +65,8 @@ private:
     bool keeps_sign(const Sample& low, const Sample& high, double h) const;
     double turning_s(const MotorFunction& function, const Sample& low, const Sample& high) const;
     void look(const MotorFunction& function, double time_s);
-    // The times of some steps from this middle on, or false: the next one has to be looked for alone.
-    bool find_ahead(const MotorFunction& function, double middle);
+    // The times of how many steps from this middle on are found; 0: the next one has to be looked for alone.
+    int find_ahead(const MotorFunction& function, double middle);
     // Since the point looked at last.
     struct Root {
         double time_s = 0, speed = 0;
@@ -91,10 +88,8 @@ private:
     double seen_s_ = 0, passed_s_ = 0;  // of the last point looked at, of the last step
     Series seen_{};                     // about the former
     Sample high_, last_;                // at the ends of the stretch and of the piece
-    // Found ahead and not given yet, and how many to look for next time.
-    static constexpr int most_ahead = 32;
-    std::array<double, most_ahead> found_s_;
-    int given_ = 0, found_ = 0, ahead_ = most_ahead;
+    std::array<double, most_steps> found_s_;
+    int ahead_ = most_steps;  // how many to look for next time
 };
 
 }  // namespace lyr::motion

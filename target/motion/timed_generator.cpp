@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "base/constants.h"
+
 namespace lyr::motion {
 namespace {
 
@@ -51,24 +53,29 @@ void TimedGenerator::find_waiting() {
         if ((waiting_ >> motor & 1) != 0) find(motor);
 }
 
-// The motor's next step, or how far it is known that there is none.
+// The motor's next steps, or how far it is known that there is none.
 void TimedGenerator::find(std::size_t index) {
     Motor& motor = motors_[index];
     waiting_ &= static_cast<std::uint8_t>(~(1u << index));
     for (;;) {
         if (motor.state == Motor::State::walking) {
-            const double time_s = motor.walk.next_s(motor.function);
-            if (time_s != TimeWalk::no_step_s) {
-                constexpr double to_nearest = 0.5;
-                next_ns_[index] =
-                    motor.begin.ns +
-                    static_cast<std::int64_t>(motor.begin.part_ns + time_s * 1e9 + to_nearest);
-                return;
-            }
+            const std::span<const double> times_s = motor.walk.next_s(motor.function);
+            if (!times_s.empty()) return keep(index, times_s);
             motor.begin = motor.begin.after(motor.function.duration_s());
         }
         if (!begin_piece(index)) return;
     }
+}
+
+void TimedGenerator::keep(std::size_t index, std::span<const double> times_s) {
+    constexpr double to_nearest = 0.5;
+    Motor& motor = motors_[index];
+    const double from_ns = motor.begin.part_ns + to_nearest;
+    motor.next = motor.end = 0;
+    for (const double time_s : times_s)
+        motor.times_ns[motor.end++] =
+            motor.begin.ns + static_cast<std::int64_t>(from_ns + time_s * ns_per_s);
+    next_ns_[index] = motor.times_ns[motor.next++];
 }
 
 bool TimedGenerator::begin_piece(std::size_t index) {
@@ -91,13 +98,17 @@ bool TimedGenerator::begin_piece(std::size_t index) {
     return false;
 }
 
-void TimedGenerator::take(std::size_t motor, StepEvent& event) {
-    const auto bit = static_cast<std::uint8_t>(1u << motor);
-    const int direction = motors_[motor].walk.direction();
+void TimedGenerator::take(std::size_t index, StepEvent& event) {
+    Motor& motor = motors_[index];
+    const auto bit = static_cast<std::uint8_t>(1u << index);
+    const int direction = motor.walk.direction();
     event.motors |= bit;
     if (direction > 0) event.positive |= bit;
-    counts_[motor] += direction;
-    find(motor);
+    counts_[index] += direction;
+    if (motor.next < motor.end)
+        next_ns_[index] = motor.times_ns[motor.next++];
+    else
+        find(index);
 }
 
 std::size_t TimedGenerator::next(std::span<StepEvent> events) {

@@ -47,9 +47,13 @@ private:
         TimeWalk walk;
         Instant begin;  // of the piece
         enum class State : std::uint8_t { fresh, walking, waiting, done } state = State::fresh;
+        // Steps that are known; those after next_ns_ are from `next` to `end`.
+        std::array<std::int64_t, TimeWalk::most_steps> times_ns{};
+        std::size_t next = 0, end = 0;
     };
 
     void find(std::size_t motor);
+    void keep(std::size_t motor, std::span<const double> times_s);
     void find_waiting();
     bool begin_piece(std::size_t motor);
     void take(std::size_t motor, StepEvent& event);
