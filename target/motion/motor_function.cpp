@@ -16,22 +16,23 @@ constexpr double instant_s = 1e-12;
 // bounds needs it, reach is checked before.
 constexpr double least_height_share = 0.05;
 
-Sample product(const Sample& a, const Sample& b) {
-    return {a.position * b.position, a.speed * b.position + a.position * b.speed,
-            a.acceleration * b.position + 2 * a.speed * b.speed + a.position * b.acceleration};
+// Of the bed over the head, which is u and v from the cell's corner.
+template <std::size_t count>
+Powers<count> lift(const MeshCell& cell, const Powers<count>& u, const Powers<count>& v,
+                   const Powers<count>& z) {
+    Powers<count> height = product(u, v), share{};
+    for (std::size_t i = 0; i < count; ++i) {
+        height[i] = cell.twist_per_mm * height[i] + cell.slope_x * u[i] + cell.slope_y * v[i];
+        share[i] = cell.share_slope_per_mm * z[i];
+    }
+    return product(plus(height, cell.height_mm), plus(share, cell.share));
 }
 
-// Of mm and seconds; that squares might overflow, as hypot() takes care of, is no matter here.
-double size(double x, double y) {
-    return std::sqrt(x * x + y * y);
-}
-
-// Sizes of a function and of its first three derivatives.
-using Sizes = std::array<double, 4>;
-
-Sizes product(const Sizes& a, const Sizes& b) {
-    return {a[0] * b[0], a[1] * b[0] + a[0] * b[1], a[2] * b[0] + 2 * a[1] * b[1] + a[0] * b[2],
-            a[3] * b[0] + 3 * a[2] * b[1] + 3 * a[1] * b[2] + a[0] * b[3]};
+MeshCell sizes_of(MeshCell cell) {
+    for (double* value : {&cell.height_mm, &cell.slope_x, &cell.slope_y, &cell.twist_per_mm,
+                          &cell.share, &cell.share_slope_per_mm})
+        *value = std::abs(*value);
+    return cell;
 }
 
 }  // namespace
@@ -93,7 +94,7 @@ Known MotorFunction::begin_piece(const MoveWindow& window, const Instant& begin)
         return Known::rests_forever;
     }
     if (bed_) stay_in_cell();
-    limit_jerk();
+    set_bounds();
     return Known::piece;
 }
 
@@ -234,117 +235,80 @@ void MotorFunction::stay_in_cell() {
                                             cell_overlap_mm / 10, duration_s_));
 }
 
-Sample MotorFunction::lift_at(const std::array<Sample, 3>& at) const {
-    const MeshCell& cell = *cell_;
-    Sample u = at[axis_x], v = at[axis_y];
-    u.position -= cell.x_mm;
-    v.position -= cell.y_mm;
-    const Sample uv = product(u, v);
-    const auto height = [&](double Sample::*of) {
-        return cell.slope_x * u.*of + cell.slope_y * v.*of + cell.twist_per_mm * uv.*of;
-    };
-    const Sample& z = at[axis_z];
-    return product(
-        Sample{cell.height_mm + height(&Sample::position), height(&Sample::speed),
-               height(&Sample::acceleration)},
-        Sample{cell.share + cell.share_slope_per_mm * z.position, cell.share_slope_per_mm * z.speed,
-               cell.share_slope_per_mm * z.acceleration});
-}
-
-double MotorFunction::lift_jerk(const std::array<Bounds, 3>& bounds) const {
-    const MeshCell& cell = *cell_;
-    const auto sizes = [&](std::size_t axis, double from_mm) {
-        const Bounds& own = bounds[axis];
-        return Sizes{std::abs(smooth_[axis].at(0).position - from_mm) + own.speed * duration_s_,
-                     own.speed, own.acceleration, own.jerk()};
-    };
-    const Sizes u = sizes(axis_x, cell.x_mm), v = sizes(axis_y, cell.y_mm), z = sizes(axis_z, 0);
-    const Sizes uv = product(u, v);
-    Sizes height{}, share{};
-    for (std::size_t i = 0; i < height.size(); ++i) {
-        height[i] = std::abs(cell.slope_x) * u[i] + std::abs(cell.slope_y) * v[i] +
-                    std::abs(cell.twist_per_mm) * uv[i];
-        share[i] = std::abs(cell.share_slope_per_mm) * z[i];
-    }
-    height[0] += std::abs(cell.height_mm);
-    share[0] += cell.share;
-    return product(height, share)[3];
-}
-
 Sample MotorFunction::at(double time_s) const {
-    if (!in_space_) {
-        Sample sample = smooth_[0].at(time_s);
-        sample.position -= start_;
-        return sample;
+    if (in_space_) {
+        const Series series = series_in_space(time_s);
+        return {series[0], series[1], 2 * series[2]};
     }
-    const std::array<Sample, 3> head{smooth_[axis_x].at(time_s), smooth_[axis_y].at(time_s),
-                                     smooth_[axis_z].at(time_s)};
-    Sample z = head[axis_z];
-    const auto raise = [&z](const Sample& by) {
-        z = {z.position + by.position, z.speed + by.speed, z.acceleration + by.acceleration};
-    };
-    if (bed_) raise(lift_at(head));
-    if (tower_) raise(height_over_head(head[axis_x], head[axis_y]));
-    return {steps_per_mm_ * (z.position - start_), steps_per_mm_ * z.speed,
-            steps_per_mm_ * z.acceleration};
+    Sample sample = smooth_[0].at(time_s);
+    sample.position -= start_;
+    return sample;
 }
 
 Series MotorFunction::series(double time_s) const {
-    if (!in_space_) {
-        Series series = smooth_[0].series(time_s);
-        series[0] -= start_;
-        return series;
-    }
-    const Sample sample = at(time_s);
-    return {sample.position, sample.speed, sample.acceleration / 2, 0, 0, 0};
+    return in_space_ ? series_in_space(time_s) : plus(smooth_[0].series(time_s), -start_);
 }
 
-// g = sqrt(q), q = arm^2 - |p|^2, p the way from the tower.
-Sample MotorFunction::height_over_head(const Sample& x, const Sample& y) const {
-    const double px = x.position - tower_->x_mm, py = y.position - tower_->y_mm;
-    const double off_mm = std::sqrt(px * px + py * py);
-    const double q = std::max(std::numeric_limits<double>::min(),
-                              (tower_->arm_mm - off_mm) * (tower_->arm_mm + off_mm));
-    const double g = std::sqrt(q);
-    const double half_q1 = -(px * x.speed + py * y.speed);
-    const double half_q2 =
-        -(x.speed * x.speed + y.speed * y.speed + px * x.acceleration + py * y.acceleration);
-    const double g1 = half_q1 / g;
-    return {g, g1, (half_q2 - g1 * g1) / g};
+Series MotorFunction::series_in_space(double time_s) const {
+    const Series x = smooth_[axis_x].series(time_s), y = smooth_[axis_y].series(time_s);
+    const Series z = smooth_[axis_z].series(time_s);
+    Series up = z;
+    if (bed_) motion::add(up, lift(*cell_, plus(x, -cell_->x_mm), plus(y, -cell_->y_mm), z));
+    if (tower_) motion::add(up, height(plus(x, -tower_->x_mm), plus(y, -tower_->y_mm)));
+    up[0] -= start_;
+    for (double& power : up) power *= steps_per_mm_;
+    return up;
 }
 
-void MotorFunction::limit_jerk() {
-    if (!in_space_) {
-        const Bounds own = smooth_[0].bounds(duration_s_);
-        least_jerk_ = own.least_jerk;
-        most_jerk_ = own.most_jerk;
-        constexpr double factorial_of_6 = 720;
-        remainder_ = {0, own.sixth / factorial_of_6};
-        return;
-    }
-    std::array<Bounds, 3> bounds;
-    for (std::size_t i = 0; i < bounds.size(); ++i) bounds[i] = smooth_[i].bounds(duration_s_);
-    const double lift = bed_ ? lift_jerk(bounds) : 0, above = tower_ ? jerk_over_head(bounds) : 0;
-    most_jerk_ = std::abs(steps_per_mm_) * (bounds[axis_z].jerk() + lift + above);
-    least_jerk_ = -most_jerk_;
-    constexpr double factorial_of_3 = 6;
-    remainder_ = {most_jerk_ / factorial_of_3, 0};
+// The root of arm^2 - x^2 - y^2.
+Series MotorFunction::height(const Series& x, const Series& y) const {
+    const Series xx = product(x, x), yy = product(y, y);
+    const double off_mm = std::sqrt(xx[0] + yy[0]);
+    Series square;
+    for (std::size_t i = 0; i < square.size(); ++i) square[i] = -(xx[i] + yy[i]);
+    square[0] = std::max(std::numeric_limits<double>::min(),
+                         (tower_->arm_mm - off_mm) * (tower_->arm_mm + off_mm));
+    return root(square);
 }
 
-// Of the root: g g' = q'/2, g g'' = q''/2 - g'^2, g g''' = q'''/2 - 3 g' g''.
-double MotorFunction::jerk_over_head(const std::array<Bounds, 3>& bounds) const {
-    const Bounds &x = bounds[axis_x], &y = bounds[axis_y];
-    const double v = size(x.speed, y.speed), a = size(x.acceleration, y.acceleration);
-    const double j = size(x.jerk(), y.jerk());
-    const double off_mm = size(smooth_[axis_x].at(0).position - tower_->x_mm,
-                               smooth_[axis_y].at(0).position - tower_->y_mm) +
-                          v * duration_s_;
+Sizes MotorFunction::sizes_of_height(const Sizes& x, const Sizes& y) const {
+    Sizes square = product(x, x);
+    motion::add(square, product(y, y));
+    const double off_mm = std::sqrt(square[0]);
     const double height_mm =
         std::sqrt(std::max(0.0, (tower_->arm_mm - off_mm) * (tower_->arm_mm + off_mm)));
-    const double g = std::max(height_mm, least_height_share * tower_->arm_mm);
-    const double g1 = off_mm * v / g;
-    const double g2 = (v * v + off_mm * a + g1 * g1) / g;
-    return (3 * v * a + off_mm * j + 3 * g1 * g2) / g;
+    return sizes_of_root(square, std::max(height_mm, least_height_share * tower_->arm_mm));
+}
+
+Sizes MotorFunction::sizes_in_space() const {
+    const auto sizes = [&](std::size_t axis, double from_mm) {
+        Sizes own = smooth_[axis].bounds(duration_s_).sizes;
+        own[0] = std::abs(smooth_[axis].at(0).position - from_mm) + own[1] * duration_s_;
+        return own;
+    };
+    const Sizes z = sizes(axis_z, 0);
+    Sizes up = z;
+    if (bed_)
+        motion::add(
+            up, lift(sizes_of(*cell_), sizes(axis_x, cell_->x_mm), sizes(axis_y, cell_->y_mm), z));
+    if (tower_)
+        motion::add(up, sizes_of_height(sizes(axis_x, tower_->x_mm), sizes(axis_y, tower_->y_mm)));
+    return up;
+}
+
+void MotorFunction::set_bounds() {
+    if (in_space_) {
+        const Sizes sizes = sizes_in_space();
+        constexpr double factorial_of_3 = 6;
+        most_jerk_ = factorial_of_3 * sizes[3] * std::abs(steps_per_mm_);
+        least_jerk_ = -most_jerk_;
+        left_out_ = sizes[6] * std::abs(steps_per_mm_);
+        return;
+    }
+    const Bounds bounds = smooth_[0].bounds(duration_s_);
+    least_jerk_ = bounds.least_jerk;
+    most_jerk_ = bounds.most_jerk;
+    left_out_ = bounds.sizes[6];
 }
 
 }  // namespace lyr::motion

@@ -9,7 +9,7 @@
 // Contract
 //  1. Pieces follow each other without gaps and end where a phase of a copy ends, where an arc has turned
 //     by Smooth::largest_turn_rad, where the head leaves a cell of the mesh, or where nothing is known of the plan yet.
-//  2. at() is exact to rounding within the piece; least_jerk() to most_jerk() holds there, and remainder() for series().
+//  2. at() is exact to rounding within the piece; least_jerk() to most_jerk() holds there, and left_out() for series().
 
 #pragma once
 
@@ -52,11 +52,12 @@ public:
     double duration_s() const { return duration_s_; }
     // Since the begin of the piece.
     Sample at(double time_s) const;
-    // Taylor's about that time; of a motor in space it ends with the square.
+    // Taylor's about that time.
     Series series(double time_s) const;
+    // By series() after a time: below this times its sixth power.
+    double left_out() const { return left_out_; }
     double least_jerk() const { return least_jerk_; }
     double most_jerk() const { return most_jerk_; }
-    const Remainder& remainder() const { return remainder_; }
 
     // The first move that any cursor still needs.
     std::uint64_t oldest_move() const;
@@ -94,11 +95,12 @@ private:
     static void turn_on(OnCircle& place, double turned_rad);
     Smooth& smooth_of(std::size_t channel) { return smooth_[in_space_ ? channel : 0]; }
     void stay_in_cell();
-    Sample lift_at(const std::array<Sample, 3>& at) const;
-    double lift_jerk(const std::array<Bounds, 3>& bounds) const;
-    Sample height_over_head(const Sample& x, const Sample& y) const;
-    double jerk_over_head(const std::array<Bounds, 3>& bounds) const;
-    void limit_jerk();
+    // Of the tower's carriage over the head.
+    Series height(const Series& x, const Series& y) const;
+    Sizes sizes_of_height(const Sizes& x, const Sizes& y) const;
+    Series series_in_space(double time_s) const;
+    Sizes sizes_in_space() const;
+    void set_bounds();
     void end_no_later_than(double time_s) {
         if (time_s < duration_s_) duration_s_ = time_s;
     }
@@ -110,8 +112,7 @@ private:
     std::optional<MeshCell> cell_;
     double steps_per_mm_ = 1, start_ = 0;
     std::array<Smooth, 3> smooth_;
-    double duration_s_ = 0, least_jerk_ = 0, most_jerk_ = 0;
-    Remainder remainder_;
+    double duration_s_ = 0, least_jerk_ = 0, most_jerk_ = 0, left_out_ = 0;
 };
 
 }  // namespace lyr::motion

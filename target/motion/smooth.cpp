@@ -86,10 +86,12 @@ void Smooth::add(const Turn& turn, double time, Series& series) {
 }
 
 // Of an angle that does not turn back, the rate is largest at one of the ends, unless its acceleration
-// changes sign between them; the sum of sizes covers that. The sixth derivative is Bell's polynomial of the angle's three.
+// changes sign between them; the sum of sizes covers that. The derivatives are Bell's polynomials of the angle's three.
 Bounds Smooth::bounds(double time) const {
-    Bounds bounds{std::abs(c_[1]) + time * (2 * std::abs(c_[2]) + time * 3 * std::abs(c_[3])),
-                  2 * std::abs(c_[2]) + 6 * std::abs(c_[3]) * time, 6 * c_[3], 6 * c_[3]};
+    Bounds bounds{{0, std::abs(c_[1]) + time * (2 * std::abs(c_[2]) + time * 3 * std::abs(c_[3])),
+                   std::abs(c_[2]) + 3 * std::abs(c_[3]) * time, std::abs(c_[3])},
+                  6 * c_[3],
+                  6 * c_[3]};
     for (std::size_t i = 0; i < turn_count_; ++i) {
         const Turn& turn = turns_[i];
         const double size = std::sqrt(turn.ahead * turn.ahead + turn.inward * turn.inward);
@@ -97,17 +99,21 @@ Bounds Smooth::bounds(double time) const {
         const double sixth = std::abs(turn.angle.sixth_jerk);
         const double end_rate = turn.angle.rate + time * (2 * turn.angle.half_acceleration +
                                                           time * 3 * turn.angle.sixth_jerk);
-        const double rate =
+        const double r =
             std::max(std::abs(turn.angle.rate), std::abs(end_rate)) + time * time * 3 * sixth;
-        const double acceleration = 2 * half + 6 * sixth * time;
-        bounds.speed += size * rate;
-        bounds.acceleration += size * (rate * rate + acceleration);
-        const double jerk = size * (rate * rate * rate + 3 * rate * acceleration + 6 * sixth);
+        const double a = 2 * half + 6 * sixth * time, j = 6 * sixth;
+        const double r2 = r * r, a2 = a * a, jerk = size * (r2 * r + 3 * r * a + j);
         bounds.least_jerk -= jerk;
         bounds.most_jerk += jerk;
-        const double r2 = rate * rate, a2 = acceleration * acceleration, j = 6 * sixth;
-        bounds.sixth += size * (r2 * (r2 * (r2 + 15 * acceleration) + 20 * rate * j + 45 * a2) +
-                                60 * rate * acceleration * j + 15 * acceleration * a2 + 10 * j * j);
+        motion::add(bounds.sizes,
+                    Sizes{0, size * r, size * (r2 + a) * (1. / 2), jerk * (1. / 6),
+                          size * (r2 * (r2 + 6 * a) + 3 * a2 + 4 * r * j) * (1. / 24),
+                          size * (r * (r2 * (r2 + 10 * a) + 15 * a2 + 10 * r * j) + 10 * a * j) *
+                              (1. / 120),
+                          size *
+                              (r2 * (r2 * (r2 + 15 * a) + 20 * r * j + 45 * a2) + 60 * r * a * j +
+                               15 * a * a2 + 10 * j * j) *
+                              (1. / 720)});
     }
     return bounds;
 }
@@ -116,7 +122,7 @@ Bounds Smooth::bounds(double time) const {
 // Newton's step, so that a few looks suffice.
 double Smooth::leaves(double low, double high, double nearly, double time) const {
     constexpr int most_looks = 50;
-    const double acceleration = bounds(time).acceleration;
+    const double acceleration = 2 * bounds(time).sizes[2];
     const auto reach_s = [acceleration](double way, double speed) {
         if (std::isinf(way)) return way;
         const double root = speed + std::sqrt(speed * speed + 2 * acceleration * way);

@@ -7,14 +7,14 @@
 //  2. leaves() is when the position first comes within `nearly` of one of two bounds it lies between, or the time given
 //     if that is earlier. It may be early (a position that creeps along a bound), never late.
 //  3. bounds() holds for all times from 0 to the one given, as long as no angle turns back.
-//  4. series() is Taylor's about the time: the function differs from it by less than the remainder at all times within
-//     the bounds'.
+//  4. series() is Taylor's about the time: it leaves out no more than the sizes of bounds() say, as long as those hold.
 
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstddef>
+
+#include "target/motion/series.h"
 
 namespace lyr::motion {
 
@@ -22,25 +22,9 @@ struct Sample {
     double position = 0, speed = 0, acceleration = 0;
 };
 
-// By powers of the time since some instant.
-using Series = std::array<double, 6>;
-
-// What a series leaves out after a time is below its cube, and its sixth power, times these.
-struct Remainder {
-    double by_cube = 0, by_sixth = 0;
-
-    double at(double time) const {
-        const double cube = std::abs(time * time * time);
-        return cube * (by_cube + cube * by_sixth);
-    }
-};
-
-// The largest sizes of the derivatives, and between what the third one lies.
 struct Bounds {
-    double speed = 0, acceleration = 0;
-    double least_jerk = 0, most_jerk = 0, sixth = 0;
-
-    double jerk() const { return std::fmax(std::abs(least_jerk), std::abs(most_jerk)); }
+    Sizes sizes{};  // but for the position's
+    double least_jerk = 0, most_jerk = 0;
 };
 
 // Without a constant: the angle since the begin.

@@ -16,6 +16,11 @@ int sign_of(double value) {
     return value > 0 ? 1 : value < 0 ? -1 : 0;
 }
 
+double sixth_power(double t) {
+    const double cube = t * t * t;
+    return cube * cube;
+}
+
 // From the series' begin on: rounding is that of the way then, not of the position.
 double way_of(const Series& c, double t) {
     return t * (c[1] + t * (c[2] + t * (c[3] + t * (c[4] + t * c[5]))));
@@ -39,7 +44,7 @@ void TimeWalk::start(const MotorFunction& function, std::int64_t count) {
     least_jerk_ = function.least_jerk();
     most_jerk_ = function.most_jerk();
     jerk_ = std::max(std::abs(least_jerk_), std::abs(most_jerk_));
-    remainder_ = function.remainder();
+    left_out_ = function.left_out();
     low_s_ = high_s_ = seen_s_ = passed_s_ = 0;
     seen_ = function.series(0);
     high_ = {seen_[0], seen_[1], 2 * seen_[2]};
@@ -184,7 +189,8 @@ bool TimeWalk::fill(double middle, int count, const Root& last) {
     const double first = middle - c[0], way = first + direction_ * (count - 1) - from;
     const double slow_s = way / from_speed, fast_s = way / (last.speed * direction_);
     const double square_s = 3 * time_s - 2 * slow_s - fast_s, cube_s = slow_s + fast_s - 2 * time_s;
-    const double left_out = remainder_.at(std::max(std::abs(from_s), std::abs(last.time_s)));
+    const double left_out =
+        left_out_ * sixth_power(std::max(std::abs(from_s), std::abs(last.time_s)));
     const double half = half_acceleration_of(c, std::abs(from_s) + 2 * time_s);
     constexpr double may_be_off_s = 0.75 * exact_s;
     const double per_step = 1 / way;
@@ -221,7 +227,7 @@ TimeWalk::Root TimeWalk::root(double middle) const {
         const double change_s = (way_of(c, root.time_s) - sought) * direction_ / root.speed;
         root.time_s -= change_s;
         if (!(std::abs(change_s) <= exact_s / 4)) continue;
-        root.is_exact = remainder_.at(root.time_s) <= exact_s / 2 * root.speed;
+        root.is_exact = left_out_ * sixth_power(root.time_s) <= exact_s / 2 * root.speed;
         break;
     }
     return root;

@@ -6,7 +6,7 @@
 //   turning point, which is looked for.
 // Otherwise it is halved. On a stretch that only rises or only falls each middle between two steps is
 // passed once. Its time is the root of the function's series about the point looked at last, by Newton's steps from that of
-// the parabola; where the series' remainder would be too much, a new point is looked at. Many middles are solved together:
+// the parabola; where what the series leaves out would be too much, a new point is looked at. Many middles are solved together:
 // the first guess is then the cubic through the time and the speed at both ends of them, and one step of Newton's is
 // enough, or they are fewer.
 //
@@ -81,7 +81,7 @@ private:
     double begin_ = 0;  // of the stretch, where play_.ahead is what it was
     std::int64_t count_ = 0;
     double duration_s_ = 0, least_jerk_ = 0, most_jerk_ = 0, jerk_ = 0;
-    Remainder remainder_;
+    double left_out_ = 0;               // of a series, by the sixth power of the time
     int direction_ = 0;                 // in the stretch; 0: stands still
     double low_s_ = 0, high_s_ = 0;     // of the stretch
     double end_ = 0;                    // its position there

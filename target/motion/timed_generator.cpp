@@ -15,12 +15,17 @@ constexpr std::int64_t never_ns = std::numeric_limits<std::int64_t>::max();
 }  // namespace
 
 TimedGenerator::TimedGenerator(const Kinematics& kinematics, const Point& origin,
-                               const Shaping& shaping) {
-    for (std::size_t motor = 0; motor < extruder_motor; ++motor)
-        motors_.push_back({function_of(kinematics, motor, origin, shaping),
-                           TimeWalk(shaping.play_steps[motor]),
-                           {}});
-    motors_.push_back({extruder_of(kinematics, shaping), TimeWalk(), {}});
+                               const Shaping& shaping)
+    : motors_{{{function_of(kinematics, axis_x, origin, shaping),
+                TimeWalk(shaping.play_steps[axis_x]),
+                {}},
+               {function_of(kinematics, axis_y, origin, shaping),
+                TimeWalk(shaping.play_steps[axis_y]),
+                {}},
+               {function_of(kinematics, axis_z, origin, shaping),
+                TimeWalk(shaping.play_steps[axis_z]),
+                {}},
+               {extruder_of(kinematics, shaping), TimeWalk(), {}}}} {
     for (const Motor& motor : motors_) {
         lead_ns_ = std::max(lead_ns_, motor.function.ahead_ns());
         behind_ns_ = std::max(behind_ns_, motor.function.behind_ns());

@@ -58,7 +58,7 @@ private:
     bool begin_piece(std::size_t motor);
     void take(std::size_t motor, StepEvent& event);
 
-    std::vector<Motor> motors_;
+    std::array<Motor, motor_count> motors_;
     std::array<std::int64_t, motor_count> next_ns_;  // of a motor's next step, in the plan's time
     std::uint8_t waiting_ = 0;  // bit m: nothing is known of motor m from then on
     MoveWindow window_;
