@@ -221,8 +221,8 @@ TimeWalk::Root TimeWalk::root(double middle) const {
     const double speed = std::max(0.0, c[1] * direction_);
     const double end_speed = std::sqrt(std::max(0.0, speed * speed + 4 * c[2] * sought));
     Root root{2 * way / (speed + end_speed)};
-    constexpr int most_steps = 5;
-    for (int step = 0; step < most_steps; ++step) {
+    constexpr int most_rounds = 5;
+    for (int round = 0; round < most_rounds; ++round) {
         root.speed = speed_of(c, root.time_s) * direction_;
         const double change_s = (way_of(c, root.time_s) - sought) * direction_ / root.speed;
         root.time_s -= change_s;
