@@ -212,6 +212,8 @@ bool TimeWalk::fill(double middle, int count, const Root& last) {
         }
     for (const double far : too_far)
         if (!(far <= 0)) return false;
+    // Left open by the stretch before: reached already.
+    found_s_[0] = std::max(found_s_[0], passed_s_);
     return true;
 }
 

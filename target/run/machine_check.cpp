@@ -96,7 +96,7 @@ void MachineCheck::measure_path(const AxisValues& planned_mm, const PathCurve& c
     file_mm[config::axis_e] -= curve.from_mm[config::axis_e];
     double squared_mm2 = 0;
     for (std::size_t i = 0; i < file_mm.size(); ++i) {
-        const double off_mm = std::abs(planned_mm[i] - file_mm[i]);
+        const double off_mm = shown(std::abs(planned_mm[i] - file_mm[i]));
         if (i != config::axis_e) squared_mm2 += off_mm * off_mm;
         const double off_steps = off_mm * steps_per_mm_[i];
         if (off_steps <= path_.steps[i]) continue;

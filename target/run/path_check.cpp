@@ -249,7 +249,8 @@ void PathCheck::measure(Reading& reading, const AxisValues& at_mm,
 
 double PathCheck::measure(Reading& reading, std::size_t axis, const AxisValues& at_mm,
                           std::int64_t position) const {
-    const double off_mm = std::abs(at_mm[axis] - position_mm(axis, static_cast<double>(position)));
+    const double off_mm =
+        shown(std::abs(at_mm[axis] - position_mm(axis, static_cast<double>(position))));
     const double off_steps = off_mm * steps_per_mm_[axis];
     Deviation& deviation = reading.deviation;
     if (off_steps <= deviation.steps[axis]) return off_mm;

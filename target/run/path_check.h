@@ -25,10 +25,12 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "base/diagnostic.h"
@@ -37,6 +39,11 @@
 namespace lyr::run {
 
 using AxisValues = std::array<double, config::axis_count>;
+
+// Of a distance that is kept if it is the largest: what is not a number must show, whatever is measured later.
+inline double shown(double distance) {
+    return std::isnan(distance) ? std::numeric_limits<double>::infinity() : distance;
+}
 
 // A piece of the file's path: straight on all axes, or an arc in x and y (z and e then even along it).
 struct PathCurve {

@@ -103,8 +103,8 @@ double PlanCheck::planned_mm(const Piece& piece, std::size_t axis, double time_s
 
 void PlanCheck::measure(std::size_t axis, double planned_mm, std::int64_t position) {
     const double planned_steps = (planned_mm - origin_mm_[axis]) * steps_per_mm_[axis];
-    deviation_steps_[axis] =
-        std::max(deviation_steps_[axis], std::abs(planned_steps - static_cast<double>(position)));
+    deviation_steps_[axis] = std::max(
+        deviation_steps_[axis], shown(std::abs(planned_steps - static_cast<double>(position))));
 }
 
 }  // namespace lyr::run

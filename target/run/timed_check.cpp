@@ -68,9 +68,7 @@ double TimedCheck::planned(std::size_t motor, std::int64_t time_ns) {
 }
 
 void TimedCheck::measure(std::size_t motor, double planned_steps, double carried_steps) {
-    const double off_steps = std::abs(planned_steps - carried_steps);
-    // Not the other way round: what is not a number must show.
-    if (!(off_steps <= off_plan_[motor])) off_plan_[motor] = off_steps;
+    off_plan_[motor] = std::max(off_plan_[motor], shown(std::abs(planned_steps - carried_steps)));
 }
 
 }  // namespace lyr::run

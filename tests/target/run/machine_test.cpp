@@ -180,6 +180,30 @@ TEST_CASE("machine check 1, 3: a step left out, doubled, late or of another moto
         }
 }
 
+TEST_CASE("timed check 1: a plan that is not a number shows, whatever comes after") {
+    motion::PlannedMove move;
+    move.path = motion::Line{{0, 0, 0}, {1, 0, 0}, 0};
+    move.profile = motion::trapezoid(1, 10, 10, 10, 1000);
+    motion::PlannedMove bad = move;
+    for (motion::Phase& phase : bad.profile.phases)
+        phase.speed_mm_s = std::numeric_limits<double>::quiet_NaN();
+    motion::PlannedMove next = move;
+    next.path = motion::Line{{1, 0, 0}, {2, 0, 0}, 0};
+    next.start_ns = 100'000'000;
+    for (const bool is_bad : {false, true}) {
+        TimedCheck check(crossed());
+        check.expect(std::array{is_bad ? bad : move, next}, {});
+        for (const std::size_t motor : {config::axis_x, config::axis_y}) {
+            StepPositions at{};
+            check.step({50'000'000, motor, at, true});
+            at[motor] = 1;
+            check.step({200'000'000, motor, at, true});
+        }
+        CHECK(std::isinf(check.off_plan()[config::axis_x]) == is_bad);
+        CHECK(std::isinf(check.off_plan()[config::axis_y]) == is_bad);
+    }
+}
+
 TEST_CASE("machine check 3: curves that the plan leaves out or adds are found") {
     const std::string file = whole_print("fewer", {0, false, 20, 30});
     for (const bool leave_out : {true, false}) {
