@@ -52,15 +52,22 @@ Status on_board(const config::Printer& printer, Diagnostics& warnings, const Wor
     if (!chip) return chip.error();
     run::lock_memory(warnings);
     gpio::MonotonicClock clock;
+    bool is_emergency = false;
     const auto stop = [&]() -> unsigned {
         constexpr unsigned at_once = 2;
-        if (*buttons && run::asks_for_emergency(**buttons, clock.now_ns())) return at_once;
+        is_emergency =
+            is_emergency || (*buttons && run::asks_for_emergency(**buttons, clock.now_ns()));
+        if (is_emergency) return at_once;
         return signals.wait_ms(0) ? 1 : 0;
     };
     Mover mover(printer, **chip, clock, inputs->get(), stop);
     Status done = work(mover);
     Status released = (*chip)->release();
-    return done ? released : done;
+    if (done) return released;
+    if (!is_emergency || done.error().status != ExitStatus::stopped) return done;
+    Diagnostic why = done.error();
+    why.message += " of input.emergency, which is active";
+    return why;
 }
 
 // Within the ranges, and within a delta's reach.

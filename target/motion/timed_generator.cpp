@@ -32,7 +32,7 @@ TimedGenerator::TimedGenerator(const Kinematics& kinematics, const Point& origin
     }
     for (Motor& motor : motors_) motor.begin = {-lead_ns_, 0};
     next_ns_.fill(-lead_ns_);
-    waiting_ = (1u << motor_count) - 1;
+    for (std::size_t motor = 0; motor < motor_count; ++motor) set_waiting(motor, true);
 }
 
 void TimedGenerator::start(const PlannedMove& planned) {
@@ -58,10 +58,18 @@ void TimedGenerator::find_waiting() {
         if ((waiting_ >> motor & 1) != 0) find(motor);
 }
 
+void TimedGenerator::set_waiting(std::size_t index, bool is_waiting) {
+    const auto bit = static_cast<std::uint8_t>(1u << index);
+    waiting_ = static_cast<std::uint8_t>(is_waiting ? waiting_ | bit : waiting_ & ~bit);
+    wait_ns_ = never_ns;
+    for (std::size_t motor = 0; motor < motor_count; ++motor)
+        if ((waiting_ >> motor & 1) != 0) wait_ns_ = std::min(wait_ns_, next_ns_[motor]);
+}
+
 // The motor's next steps, or how far it is known that there is none.
 void TimedGenerator::find(std::size_t index) {
     Motor& motor = motors_[index];
-    waiting_ &= static_cast<std::uint8_t>(~(1u << index));
+    if ((waiting_ >> index & 1) != 0) set_waiting(index, false);
     for (;;) {
         if (motor.state == Motor::State::walking) {
             const std::span<const double> times_s = motor.walk.next_s(motor.function);
@@ -93,7 +101,7 @@ bool TimedGenerator::begin_piece(std::size_t index) {
         case Known::nothing_yet:
             motor.state = Motor::State::waiting;
             next_ns_[index] = motor.begin.ns;
-            waiting_ |= static_cast<std::uint8_t>(1u << index);
+            set_waiting(index, true);
             return false;
         case Known::rests_forever:
             motor.state = Motor::State::done;
@@ -120,14 +128,11 @@ std::size_t TimedGenerator::next(std::span<StepEvent> events) {
     std::size_t written = 0;
     while (written < events.size()) {
         const std::int64_t soonest_ns = *std::min_element(next_ns_.begin(), next_ns_.end());
-        unsigned due = 0;
-        for (std::size_t motor = 0; motor < motor_count; ++motor)
-            due |= static_cast<unsigned>(next_ns_[motor] == soonest_ns) << motor;
-        if (soonest_ns == never_ns || (due & waiting_) != 0) break;
+        if (soonest_ns >= wait_ns_) break;
         // Rounding may put the first step of a piece before the last of the one before it.
         last_ns_ = std::max(last_ns_, soonest_ns + lead_ns_);
         StepEvent event{last_ns_};
-        // Four branches that are guessed are quicker than the bits of `due`, which are waited for.
+        // Four branches that are guessed are quicker than the number of the soonest, which is waited for.
         for (std::size_t motor = 0; motor < motor_count; ++motor)
             if (next_ns_[motor] == soonest_ns) take(motor, event);
         events[written++] = event;

@@ -55,12 +55,14 @@ private:
     void find(std::size_t motor);
     void keep(std::size_t motor, std::span<const double> times_s);
     void find_waiting();
+    void set_waiting(std::size_t motor, bool is_waiting);
     bool begin_piece(std::size_t motor);
     void take(std::size_t motor, StepEvent& event);
 
     std::array<Motor, motor_count> motors_;
     std::array<std::int64_t, motor_count> next_ns_;  // of a motor's next step, in the plan's time
     std::uint8_t waiting_ = 0;  // bit m: nothing is known of motor m from then on
+    std::int64_t wait_ns_ = 0;  // the soonest of these, or never
     MoveWindow window_;
     std::int64_t lead_ns_ = 0, behind_ns_ = 0;
     StepCounts counts_{};

@@ -184,6 +184,17 @@ bool is_kept(const std::string& path) {
     return is_locked;
 }
 
+namespace {
+
+// What a full disk has no room for is found out before anything moves. A file system that cannot reserve is written to
+// without, as is what is no file. The size stays: an empty journal is one that says nothing.
+bool has_room(int descriptor) {
+    return ::fallocate(descriptor, FALLOC_FL_KEEP_SIZE, 0, slot_spacing + slot_bytes) == 0 ||
+           errno != ENOSPC;
+}
+
+}  // namespace
+
 Result<Journal> Journal::open(const std::string& path) {
     constexpr mode_t for_all_to_read = 0644;
     const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, for_all_to_read);
@@ -196,6 +207,12 @@ Result<Journal> Journal::open(const std::string& path) {
     }
     sync_folder_of(path);
     const Slots before = read_slots(descriptor);
+    if (!has_room(descriptor)) {
+        const Diagnostic full = failed(ExitStatus::output, "cannot write the journal", path);
+        if (before.is_empty) (void)::unlink(path.c_str());
+        ::close(descriptor);
+        return full;
+    }
     return Journal(path, descriptor, before.latest ? before.latest->sequence : 0, before.is_empty);
 }
 
@@ -230,6 +247,8 @@ Status Journal::clear() {
     if (!is_cleared && !is_device)
         return failed(ExitStatus::output, "cannot write the journal", path_);
     is_empty_ = true;
+    // It was there a moment ago.
+    (void)has_room(descriptor_);
     return Done{};
 }
 

@@ -64,7 +64,8 @@ private:
         std::int64_t ns = none_ns;
         void keep(std::int64_t duration_ns) { ns = std::min(ns, duration_ns); }
     };
-    struct AxisState {
+    // Of a size that an index is shifted by, not multiplied with.
+    struct alignas(128) AxisState {
         std::uint64_t steps = 0, reversals = 0;
         std::int64_t rise_ns = never_ns, fall_ns = never_ns, turn_ns = never_ns;
         std::int64_t held_from_ns = never_ns;  // the last rise, if there was no turn since

@@ -185,9 +185,14 @@ std::string text_of(const SimulationReport& report) {
                       path.worst_at_mm[0], path.worst_at_mm[1], path.worst_at_mm[2]);
     text += formatted("  off plan     %.6f microsteps at most, at the same time\n",
                       *std::max_element(report.planned_steps.begin(), report.planned_steps.end()));
+    const auto& play_mm = report.printer.backlash_mm;
+    const bool has_play =
+        std::any_of(play_mm.begin(), play_mm.end(), [](double mm) { return mm > 0; });
+    const char* const allowed =
+        has_play ? "half a microstep and a fifth of backlash_mm" : "half a microstep";
     text += report.within_limits()
-                ? "  within half a microstep everywhere (times are whole nanoseconds)\n"
-                : "  NOT within half a microstep, or pulses too short\n";
+                ? formatted("  within %s everywhere (times are whole nanoseconds)\n", allowed)
+                : formatted("  NOT within %s, or pulses too short\n", allowed);
     return text;
 }
 

@@ -248,9 +248,10 @@ SimulationReport Simulation::report() const {
         report.slowed_s = std::max(0.0, took_s - print_time_s_ - waited_s_ - report.paused_s);
     report.notes = notes_;
     if (posted_ < job_.script.size())
-        report.notes.push_back(script_warning(
-            clock_.now_ns(), formatted("the print ended, and %zu commands of the script came after",
-                                       job_.script.size() - posted_)));
+        report.notes.push_back(
+            script_warning(clock_.now_ns(), "the print ended, and " +
+                                                counted(job_.script.size() - posted_, "command") +
+                                                " of the script came after"));
     for (std::size_t i = 0; i < config::heater_count; ++i) {
         const thermal::HeaterStatus* status = heat_.control().status(i);
         if (heats_ && status && status->on_s > 0)

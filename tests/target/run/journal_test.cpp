@@ -3,10 +3,14 @@
 #include "target/run/journal.h"
 
 #include <doctest/doctest.h>
+#include <sched.h>
 #include <sys/mman.h>
+#include <sys/mount.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <filesystem>
+#include <fstream>
 
 using namespace lyr;
 using namespace lyr::run;
@@ -281,4 +285,40 @@ TEST_CASE("journal 4: files differ by length and by any byte") {
         CHECK_FALSE(whole == identity(changed));
     }
     CHECK_FALSE(identity_of("/nonexistent").ok());
+}
+
+namespace {
+
+constexpr int may_not_mount = 77;
+
+// In a process of its own, which sees a disk of one page, and that full. 0: as it should be.
+int open_on_full_disk(const std::string& folder) {
+    if (::unshare(CLONE_NEWNS) != 0 && ::unshare(CLONE_NEWUSER | CLONE_NEWNS) != 0)
+        return may_not_mount;
+    if (::mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0 ||
+        ::mount("tmpfs", folder.c_str(), "tmpfs", 0, "size=4k") != 0)
+        return may_not_mount;
+    std::ofstream(folder + "/filled") << std::string(4096, 'x');
+    const std::string path = folder + "/print.lyr.journal";
+    const Result<Journal> journal = Journal::open(path);
+    if (journal) return 1;
+    if (journal.error().message.find("No space left on device") == std::string::npos) return 2;
+    return std::filesystem::exists(path) ? 3 : 0;
+}
+
+}  // namespace
+
+TEST_CASE("journal: that a disk is full is known before anything moves, and no file is left") {
+    const std::filesystem::path folder =
+        std::filesystem::temp_directory_path() / "lyr_run_full_disk";
+    std::filesystem::create_directories(folder);
+    const pid_t child = ::fork();
+    if (child == 0) ::_exit(open_on_full_disk(folder));
+    int status = 0;
+    REQUIRE(::waitpid(child, &status, 0) == child);
+    REQUIRE(WIFEXITED(status));
+    if (WEXITSTATUS(status) == may_not_mount)
+        MESSAGE("not run: nobody may mount a disk here");
+    else
+        CHECK(WEXITSTATUS(status) == 0);
 }

@@ -261,7 +261,7 @@ TEST_CASE("life 5: what cannot be done is refused, and the print goes on as befo
     const Result<SimulationReport> late = simulated(cold_file(), "9999 fan 0.5");
     REQUIRE(late.ok());
     REQUIRE(late->notes.size() == 1);
-    CHECK(late->notes[0].message.find("1 commands of the script came after") != std::string::npos);
+    CHECK(late->notes[0].message.find("1 command of the script came after") != std::string::npos);
     config::Printer plain_printer = parking_printer();
     plain_printer.part_fan.reset();
     CHECK(objection(SetFan{1}, plain_printer) == "the printer has no part fan");
