@@ -46,6 +46,7 @@ struct Cancel {
 };
 // Steps and heaters stop at once; where the head is, nobody knows then.
 struct EmergencyStop {
+    bool by_line = false;  // input.emergency
     friend bool operator==(const EmergencyStop&, const EmergencyStop&) = default;
 };
 // Until the file itself sets this heater again.

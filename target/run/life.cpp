@@ -89,7 +89,10 @@ void Life::serve(const Command& command) {
     if (std::holds_alternative<EmergencyStop>(command)) {
         if (cut) cut();
         ended_by_ =
-            "emergency stop: steps and heaters are off, and the position of the head is lost; " +
+            std::string(std::get<EmergencyStop>(command).by_line
+                            ? "emergency stop, by input.emergency: "
+                            : "emergency stop: ") +
+            "steps and heaters are off, and the position of the head is lost; " +
             std::string(knows_height() ? "leave z where it is to go on with --resume, or " : "") +
             "home the printer before the next print";
         phase_ = Phase::over;
@@ -464,7 +467,7 @@ void Life::rest_for_filament() {
 void Life::press(std::size_t input) {
     const bool goes_on = phase_ == Phase::resting && input == config::input_pause;
     const std::array<Command, config::input_count> meant{
-        goes_on ? Command(Resume{}) : Command(Pause{}), Cancel{}, EmergencyStop{},
+        goes_on ? Command(Resume{}) : Command(Pause{}), Cancel{}, EmergencyStop{true},
         ChangeFilament{}};
     (void)control_.post(meant[input]);
 }

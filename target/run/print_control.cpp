@@ -13,7 +13,8 @@ bool PrintControl::post(const Command& command) {
     const std::lock_guard lock(mutex_);
     if (is_emergency) {
         // One is enough, however often it is asked for.
-        if (waiting_.empty() || waiting_.front() != command) waiting_.push_front(command);
+        if (waiting_.empty() || !std::holds_alternative<EmergencyStop>(waiting_.front()))
+            waiting_.push_front(command);
         return true;
     }
     if (waiting_.size() >= most_waiting) return false;

@@ -158,7 +158,8 @@ TEST_CASE("print 9: the cancel button, the emergency line, and lines that are lo
     const Pressing cut = print_and_press({{PrintState::printing, config::input_emergency}});
     REQUIRE_FALSE(cut.report.ok());
     CHECK(cut.report.error().status == ExitStatus::stopped);
-    CHECK(cut.report.error().message.find("emergency stop") != std::string::npos);
+    CHECK(cut.report.error().message.find("emergency stop, by input.emergency: ") !=
+          std::string::npos);
     CHECK_FALSE(cut.end.is_position_known);
     const Pressing lost = print_and_press({}, true);
     REQUIRE_FALSE(lost.report.ok());
