@@ -32,7 +32,7 @@ struct Portion {
 
 class StreamBeside {
 public:
-    static constexpr std::size_t portions_in_group = 3, ahead = 2;
+    static constexpr std::size_t portions_in_group = 2, ahead = 2;
 
     // `speed_factor` is read by next() alone.
     StreamBeside(EventStream stream, const std::atomic<float>& speed_factor,
