@@ -207,9 +207,9 @@ Result<Journal> Journal::open(const std::string& path) {
     }
     sync_folder_of(path);
     const Slots before = read_slots(descriptor);
-    if (!has_room(descriptor)) {
+    if (before.is_empty && !has_room(descriptor)) {
         const Diagnostic full = failed(ExitStatus::output, "cannot write the journal", path);
-        if (before.is_empty) (void)::unlink(path.c_str());
+        (void)::unlink(path.c_str());
         ::close(descriptor);
         return full;
     }
@@ -247,7 +247,7 @@ Status Journal::clear() {
     if (!is_cleared && !is_device)
         return failed(ExitStatus::output, "cannot write the journal", path_);
     is_empty_ = true;
-    // It was there a moment ago.
+    // What there was room for a moment ago.
     (void)has_room(descriptor_);
     return Done{};
 }
