@@ -192,11 +192,13 @@ MotorFunction::OnCircle MotorFunction::place_on(const ChannelMove& move, double 
 void MotorFunction::turn_on(OnCircle& place, double turned_rad) {
     const auto [sine, versine] = Smooth::turned(turned_rad - place.turned_rad);
     const double along_x = -place.sine_mm, along_y = place.cosine_mm;
+    const double way_x_mm = along_x * sine - along_y * versine;
+    const double way_y_mm = along_y * sine + along_x * versine;
     place.turned_rad = turned_rad;
-    place.x_mm += along_x * sine - along_y * versine;
-    place.y_mm += along_y * sine + along_x * versine;
-    place.sine_mm += along_y * sine + along_x * versine;
-    place.cosine_mm += along_x * sine - along_y * versine;
+    place.x_mm += way_x_mm;
+    place.y_mm += way_y_mm;
+    place.cosine_mm += way_x_mm;
+    place.sine_mm += way_y_mm;
 }
 
 void MotorFunction::add_turn(Cursor& cursor, const ChannelMove& move, double distance_mm,
@@ -281,10 +283,12 @@ Sizes MotorFunction::sizes_of_height(const Sizes& x, const Sizes& y) const {
 }
 
 Sizes MotorFunction::sizes_in_space() const {
+    std::array<Sizes, 3> own;
+    for (std::size_t i = 0; i < own.size(); ++i) own[i] = smooth_[i].bounds(duration_s_).sizes;
     const auto sizes = [&](std::size_t axis, double from_mm) {
-        Sizes own = smooth_[axis].bounds(duration_s_).sizes;
-        own[0] = std::abs(smooth_[axis].at(0).position - from_mm) + own[1] * duration_s_;
-        return own;
+        own[axis][0] =
+            std::abs(smooth_[axis].at(0).position - from_mm) + own[axis][1] * duration_s_;
+        return own[axis];
     };
     const Sizes z = sizes(axis_z, 0);
     Sizes up = z;

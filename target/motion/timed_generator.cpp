@@ -32,7 +32,7 @@ TimedGenerator::TimedGenerator(const Kinematics& kinematics, const Point& origin
     }
     for (Motor& motor : motors_) motor.begin = {-lead_ns_, 0};
     next_ns_.fill(-lead_ns_);
-    for (std::size_t motor = 0; motor < motor_count; ++motor) set_waiting(motor, true);
+    note_waiting();
 }
 
 void TimedGenerator::start(const PlannedMove& planned) {
@@ -55,21 +55,20 @@ void TimedGenerator::finish() {
 
 void TimedGenerator::find_waiting() {
     for (std::size_t motor = 0; motor < motor_count; ++motor)
-        if ((waiting_ >> motor & 1) != 0) find(motor);
+        if (motors_[motor].state == Motor::State::waiting) find(motor);
+    note_waiting();
 }
 
-void TimedGenerator::set_waiting(std::size_t index, bool is_waiting) {
-    const auto bit = static_cast<std::uint8_t>(1u << index);
-    waiting_ = static_cast<std::uint8_t>(is_waiting ? waiting_ | bit : waiting_ & ~bit);
+void TimedGenerator::note_waiting() {
     wait_ns_ = never_ns;
     for (std::size_t motor = 0; motor < motor_count; ++motor)
-        if ((waiting_ >> motor & 1) != 0) wait_ns_ = std::min(wait_ns_, next_ns_[motor]);
+        if (motors_[motor].state == Motor::State::waiting)
+            wait_ns_ = std::min(wait_ns_, next_ns_[motor]);
 }
 
 // The motor's next steps, or how far it is known that there is none.
 void TimedGenerator::find(std::size_t index) {
     Motor& motor = motors_[index];
-    if ((waiting_ >> index & 1) != 0) set_waiting(index, false);
     for (;;) {
         if (motor.state == Motor::State::walking) {
             const std::span<const double> times_s = motor.walk.next_s(motor.function);
@@ -101,7 +100,7 @@ bool TimedGenerator::begin_piece(std::size_t index) {
         case Known::nothing_yet:
             motor.state = Motor::State::waiting;
             next_ns_[index] = motor.begin.ns;
-            set_waiting(index, true);
+            note_waiting();
             return false;
         case Known::rests_forever:
             motor.state = Motor::State::done;

@@ -46,7 +46,7 @@ private:
         MotorFunction function;
         TimeWalk walk;
         Instant begin;  // of the piece
-        enum class State : std::uint8_t { fresh, walking, waiting, done } state = State::fresh;
+        enum class State : std::uint8_t { walking, waiting, done } state = State::waiting;
         // Steps that are known; those after next_ns_ are from `next` to `end`.
         std::array<std::int64_t, TimeWalk::most_steps> times_ns{};
         std::size_t next = 0, end = 0;
@@ -55,14 +55,14 @@ private:
     void find(std::size_t motor);
     void keep(std::size_t motor, std::span<const double> times_s);
     void find_waiting();
-    void set_waiting(std::size_t motor, bool is_waiting);
+    void note_waiting();
     bool begin_piece(std::size_t motor);
     void take(std::size_t motor, StepEvent& event);
 
     std::array<Motor, motor_count> motors_;
     std::array<std::int64_t, motor_count> next_ns_;  // of a motor's next step, in the plan's time
-    std::uint8_t waiting_ = 0;  // bit m: nothing is known of motor m from then on
-    std::int64_t wait_ns_ = 0;  // the soonest of these, or never
+    std::int64_t wait_ns_ =
+        0;  // the soonest of motors that wait, or never: nothing is known from then on
     MoveWindow window_;
     std::int64_t lead_ns_ = 0, behind_ns_ = 0;
     StepCounts counts_{};

@@ -109,6 +109,13 @@ struct Slots {
     bool has_other_version = false;
 };
 
+// What a full disk has no room for is found out before anything moves. A file system that cannot reserve is written to
+// without, as is what is no file. The size stays: an empty journal is one that says nothing.
+bool has_room(int descriptor) {
+    return ::fallocate(descriptor, FALLOC_FL_KEEP_SIZE, 0, slot_spacing + slot_bytes) == 0 ||
+           errno != ENOSPC;
+}
+
 Slots read_slots(int descriptor) {
     Slots slots;
     for (const off_t place : {off_t{0}, slot_spacing}) {
@@ -183,17 +190,6 @@ bool is_kept(const std::string& path) {
     ::close(descriptor);
     return is_locked;
 }
-
-namespace {
-
-// What a full disk has no room for is found out before anything moves. A file system that cannot reserve is written to
-// without, as is what is no file. The size stays: an empty journal is one that says nothing.
-bool has_room(int descriptor) {
-    return ::fallocate(descriptor, FALLOC_FL_KEEP_SIZE, 0, slot_spacing + slot_bytes) == 0 ||
-           errno != ENOSPC;
-}
-
-}  // namespace
 
 Result<Journal> Journal::open(const std::string& path) {
     constexpr mode_t for_all_to_read = 0644;

@@ -19,7 +19,7 @@ double coordinate(const motion::Point& point, std::size_t axis) {
 
 void PlanCheck::expect(std::span<const motion::PlannedMove> moves, std::span<const Shift> shifts) {
     for (const motion::PlannedMove& move : moves) append(move);
-    shifts_.insert(shifts_.end(), shifts.begin(), shifts.end());
+    shifts_.append(shifts);
 }
 
 void PlanCheck::append(const motion::PlannedMove& move) {
@@ -45,11 +45,7 @@ void PlanCheck::append(const motion::PlannedMove& move) {
 }
 
 void PlanCheck::step(const DecodedStep& step) {
-    while (!shifts_.empty() && shifts_.front().from_ns <= step.time_ns) {
-        shift_ns_ = shifts_.front().shift_ns;
-        shifts_.pop_front();
-    }
-    const std::int64_t planned_ns = step.time_ns - shift_ns_;
+    const std::int64_t planned_ns = shifts_.asked_ns(step.time_ns);
     look_until(planned_ns, step.before);
     if (pieces_.empty()) {
         // Nothing was planned for this step at all: as far off as can be.

@@ -48,8 +48,7 @@ private:
 
     AxisValues steps_per_mm_, origin_mm_;
     std::deque<Piece> pieces_;
-    std::deque<Shift> shifts_;
-    std::int64_t shift_ns_ = 0;
+    ShiftLog shifts_;
     double e_end_mm_ = 0;  // where the last piece leaves the extruder
     double e_error_mm_ =
         0;  // of that sum; hundreds of thousands of roundings would be parts of a step

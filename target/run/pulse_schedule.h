@@ -17,6 +17,7 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <span>
 #include <vector>
 
@@ -45,6 +46,24 @@ struct LineEvent {
 struct Shift {
     std::int64_t from_ns = 0;
     std::int64_t shift_ns = 0;
+};
+
+// Follows the shifts of a schedule along its events, from one to a later one.
+class ShiftLog {
+public:
+    void append(std::span<const Shift> shifts) {
+        coming_.insert(coming_.end(), shifts.begin(), shifts.end());
+    }
+    // When the step was asked for whose event comes then.
+    std::int64_t asked_ns(std::int64_t event_ns) {
+        for (; !coming_.empty() && coming_.front().from_ns <= event_ns; coming_.pop_front())
+            shift_ns_ = coming_.front().shift_ns;
+        return event_ns - shift_ns_;
+    }
+
+private:
+    std::deque<Shift> coming_;
+    std::int64_t shift_ns_ = 0;
 };
 
 class PulseSchedule {

@@ -26,15 +26,11 @@ void TimedCheck::expect(std::span<const motion::PlannedMove> moves, std::span<co
                 move.start_ns + plan_.lead_ns() +
                 std::llround(move.profile.duration_s * ns_per_s * look / looks_per_move));
     }
-    shifts_.insert(shifts_.end(), shifts.begin(), shifts.end());
+    shifts_.append(shifts);
 }
 
 void TimedCheck::step(const DecodedStep& step) {
-    while (!shifts_.empty() && shifts_.front().from_ns <= step.time_ns) {
-        shift_ns_ = shifts_.front().shift_ns;
-        shifts_.pop_front();
-    }
-    const std::int64_t planned_ns = step.time_ns - shift_ns_;
+    const std::int64_t planned_ns = shifts_.asked_ns(step.time_ns);
     look_until(planned_ns, step.before);
     const double planned_steps = planned(step.axis, planned_ns);
     measure(step.axis, planned_steps, at_steps_[step.axis]);

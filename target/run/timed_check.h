@@ -38,8 +38,7 @@ private:
     ShapedPlan plan_;
     AxisValues play_steps_{}, at_steps_{};  // of the axes; after the last step of each
     std::deque<std::int64_t> looks_ns_;
-    std::deque<Shift> shifts_;
-    std::int64_t shift_ns_ = 0;
+    ShiftLog shifts_;
     AxisValues off_plan_{};
 };
 
