@@ -4,31 +4,24 @@
 
 namespace lyr::gpio {
 
-MockChip::MockChip(std::size_t line_count, const Clock& clock, Observer observer, Fault fault)
-    : line_count_(line_count),
-      clock_(clock),
-      observer_(std::move(observer)),
-      fault_(std::move(fault)) {}
-
-MockChip::~MockChip() {
-    (void)MockChip::release();
+Status LineFaults::next() {
+    if (released_)
+        return Diagnostic{Severity::error,
+                          ExitStatus::internal,
+                          "a line was written after the lines were released",
+                          {}};
+    if (auto error = fault_(writes_++)) return std::move(*error);
+    return Done{};
 }
 
-Diagnostic MockChip::write_after_release() {
-    return {Severity::error,
-            ExitStatus::internal,
-            "a line was written after the lines were released",
-            {}};
-}
-
-Status MockChip::release() {
+Status LineFaults::release(GpioChip& lines) {
     if (released_) return Done{};
-    Status low = write(all_lines(line_count_), 0);
+    Status low = lines.write(all_lines(lines.line_count()), 0);
     released_ = true;
     return low;
 }
 
-MockChip::Observer recorder(std::vector<LineWrite>& writes) {
+LineObserver recorder(std::vector<LineWrite>& writes) {
     return [&writes](const LineWrite& write) { writes.push_back(write); };
 }
 

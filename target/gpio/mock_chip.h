@@ -27,42 +27,64 @@ struct LineWrite {
     LineMask levels = 0;   // of all lines, after the write
 };
 
-class MockChip final : public GpioChip {
+// Which writes fail, and how.
+class LineFaults {
 public:
-    using Observer = std::function<void(const LineWrite&)>;
     using Fault = std::function<std::optional<Diagnostic>(std::uint64_t number)>;
 
-    MockChip(std::size_t line_count, const Clock& clock, Observer observer, Fault fault = {});
-    ~MockChip() override;
-
-    std::size_t line_count() const override { return line_count_; }
-    // Here, so that whoever knows the type makes no call for it: simulations write hundreds of millions of times.
-    Status write(LineMask changed, LineMask levels) override {
-        if (released_) return write_after_release();
-        if (fault_)
-            if (auto error = fault_(writes_++)) return std::move(*error);
-        changed &= all_lines(line_count_);
-        levels_ = (levels_ & ~changed) | (levels & changed);
-        if (observer_) observer_({clock_.now_ns(), changed, levels_});
-        return Done{};
-    }
-    Status release() override;
-    LineMask levels() const { return levels_; }
+    explicit LineFaults(Fault fault) : fault_(std::move(fault)) {}
+    // False: next() need not be asked.
+    bool may_fail() const { return released_ || fault_; }
+    Status next();
+    // From now on all writes fail; the last one makes every line inactive.
+    Status release(GpioChip& lines);
     bool released() const { return released_; }
 
 private:
-    static Diagnostic write_after_release();
-
-    std::size_t line_count_;
-    const Clock& clock_;
-    Observer observer_;
     Fault fault_;
-    LineMask levels_ = 0;
     std::uint64_t writes_ = 0;
     bool released_ = false;
 };
 
+// `Observer` is called with each LineWrite, and false where there is none. With types of their own no write needs a call:
+// simulations write hundreds of millions of times.
+template <class Observer, class Timer = Clock>
+class MockLines final : public GpioChip {
+public:
+    using Fault = LineFaults::Fault;
+
+    MockLines(std::size_t line_count, const Timer& clock, Observer observer, Fault fault = {})
+        : line_count_(line_count),
+          clock_(clock),
+          observer_(std::move(observer)),
+          faults_(std::move(fault)) {}
+    ~MockLines() override { (void)MockLines::release(); }
+
+    std::size_t line_count() const override { return line_count_; }
+    Status write(LineMask changed, LineMask levels) override {
+        Status written = faults_.may_fail() ? faults_.next() : Status(Done{});
+        if (!written) return written;
+        changed &= all_lines(line_count_);
+        levels_ = (levels_ & ~changed) | (levels & changed);
+        if (observer_) observer_(LineWrite{clock_.now_ns(), changed, levels_});
+        return written;
+    }
+    Status release() override { return faults_.release(*this); }
+    LineMask levels() const { return levels_; }
+    bool released() const { return faults_.released(); }
+
+private:
+    std::size_t line_count_;
+    const Timer& clock_;
+    Observer observer_;
+    LineFaults faults_;
+    LineMask levels_ = 0;
+};
+
+using LineObserver = std::function<void(const LineWrite&)>;
+using MockChip = MockLines<LineObserver>;
+
 // An observer that appends to `writes`, which must outlive it.
-MockChip::Observer recorder(std::vector<LineWrite>& writes);
+LineObserver recorder(std::vector<LineWrite>& writes);
 
 }  // namespace lyr::gpio

@@ -42,7 +42,7 @@ Heating model_heating(const config::Printer& printer, const gpio::Clock& clock) 
         outputs.push_back(
             {thermal::LineOutput{outputs.size(), thermal::SlowPwm(printer.part_fan->cycle_s)},
              false});
-    auto chip = std::make_unique<gpio::MockChip>(outputs.size(), clock, gpio::MockChip::Observer());
+    auto chip = std::make_unique<gpio::MockChip>(outputs.size(), clock, gpio::LineObserver());
     const gpio::LineMask fan_bit = has_fan ? gpio::line_bit(numbers.size()) : 0;
     std::vector<thermal::HeaterPort> ports;
     for (std::size_t line = 0; line < numbers.size(); ++line) {

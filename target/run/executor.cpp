@@ -82,7 +82,15 @@ void Executor::start(const LineEvent& event) {
     started_ = started_ || !on_trip_;
 }
 
-std::optional<std::int64_t> Executor::paced_gap_ns(std::int64_t gap_ns, double target) {
+bool Executor::wait_for_last_slice(std::int64_t time_ns) {
+    std::int64_t now_ns = last_end_ns_;
+    for (; time_ns - now_ns > wait_slice_ns; now_ns = clock_.wait_until_ns(now_ns + wait_slice_ns))
+        if (target_pace() == 0) return false;
+    return true;
+}
+
+std::optional<std::int64_t> Executor::paced_gap_ns(std::int64_t gap_ns, float wanted) {
+    const double target = static_cast<double>(wanted);
     const bool stands = gap_ns > standing_ns;
     if (target == 0) {
         const bool at_once = stop_requests_.load(std::memory_order_relaxed) > 1;
@@ -99,11 +107,11 @@ std::optional<std::int64_t> Executor::paced_gap_ns(std::int64_t gap_ns, double t
     return std::llround(paced_ns);
 }
 
-bool Executor::pass_mark(const LineEvent& event) {
+bool Executor::pass_mark(gpio::LineMask levels) {
     if (!at_gate_) ++marks_reached_;
     if (!marks_) return true;
     marks_->reached.store(marks_reached_, std::memory_order_release);
-    if (!((event.levels ^ levels_) & gate_bit)) return true;
+    if (!((levels ^ levels_) & gate_bit)) return true;
     const std::int64_t from_ns = clock_.now_ns();
     std::int64_t now_ns = from_ns;
     const auto is_open = [&] {

@@ -106,23 +106,22 @@ private:
     // In executor_loop.h, what is done for each event.
     template <class Chip, class Timer>
     Result<bool> run(std::span<const LineEvent> events);
-    // The time after the wait, or none if it was left on request.
-    template <class Timer>
-    std::optional<std::int64_t> wait_until_ns(std::int64_t time_ns);
+    // Of a long wait. False: left on request.
+    bool wait_for_last_slice(std::int64_t time_ns);
     // `falls`: the step lines that would end their pulse, if they had not at rest.
     template <class Chip, class Timer>
-    Status write(const LineEvent& event, gpio::LineMask falls);
+    Status write(LineEvent event, gpio::LineMask falls);
     void count(gpio::LineMask toggled, gpio::LineMask levels);
-    double target_pace() const;
+    float target_pace() const;
 
     void start(const LineEvent& event);
     // Clock time between the last event and one `gap_ns` after it, longer while braking; none if the
     // head is at rest and shall stay there.
-    std::optional<std::int64_t> paced_gap_ns(std::int64_t gap_ns, double target);
+    std::optional<std::int64_t> paced_gap_ns(std::int64_t gap_ns, float target);
     // Ends the pulses that are out. Always false, or what failed.
     Result<bool> rest();
     // False: left on request.
-    bool pass_mark(const LineEvent& event);
+    bool pass_mark(gpio::LineMask levels);
     Diagnostic too_late(std::int64_t late_ns) const;
 
     gpio::GpioChip& chip_;

@@ -12,14 +12,17 @@ namespace lyr::run {
 template <class Chip, class Timer>
 Result<bool> Executor::run(std::span<const LineEvent> events) {
     taken_ = 0;
-    for (LineEvent event : events) {
-        if (!started_ && !on_trip_ && target_pace() == 0) return false;
-        if (rebased_) start(event);
-        const gpio::LineMask ended = on_trip_ ? 0 : ended_;
-        const gpio::LineMask falls = ended & ~event.levels;
-        event.levels &= ~ended;
-        std::int64_t gap_ns = event.time_ns - last_event_ns_;
-        if (const double target = target_pace(); target != 1 || pace_ != 1) {
+    if (events.empty()) return true;
+    if (!started_ && !on_trip_ && target_pace() == 0) return false;
+    if (rebased_) start(events.front());
+    for (const auto& [time_ns, planned_levels] : events) {
+        gpio::LineMask levels = planned_levels, falls = 0;
+        if (ended_ != 0 && !on_trip_) {
+            falls = ended_ & ~levels;
+            levels &= ~ended_;
+        }
+        std::int64_t gap_ns = time_ns - last_event_ns_;
+        if (const float target = target_pace(); target != 1 || pace_ != 1) {
             const std::optional<std::int64_t> paced_ns = paced_gap_ns(gap_ns, target);
             if (!paced_ns) return rest();
             gap_ns = *paced_ns;
@@ -27,41 +30,32 @@ Result<bool> Executor::run(std::span<const LineEvent> events) {
         const std::int64_t due_ns = last_begin_ns_ + gap_ns;
         const std::int64_t allowed_ns =
             std::max(due_ns, last_end_ns_ + std::min(gap_ns, timing_.edge_gap_ns));
-        const std::optional<std::int64_t> begin_ns = wait_until_ns<Timer>(allowed_ns);
-        if (!begin_ns) return rest();
-        const std::int64_t late_ns = *begin_ns - due_ns;
+        if (allowed_ns - last_end_ns_ > wait_slice_ns && !wait_for_last_slice(allowed_ns))
+            return rest();
+        const std::int64_t begin_ns = static_cast<Timer&>(clock_).wait_until_ns(allowed_ns);
+        const std::int64_t late_ns = begin_ns - due_ns;
         worst_late_ns_ = std::max(worst_late_ns_, late_ns);
         // Only steps move the head: the end of a pulse or a turn that comes late must not slow it down.
-        const bool is_step = (event.levels & ~levels_ & all_step_bits) != 0;
+        const bool is_step = (levels & ~levels_ & all_step_bits) != 0;
         if (is_step) stretched_ns_ += late_ns;
         if (late_ns > timing_.late_limit_ns) return too_late(late_ns);
-        last_begin_ns_ = is_step ? *begin_ns : due_ns;
-        if (((event.levels ^ levels_) & all_mark_bits) && !pass_mark(event)) return rest();
-        if (Status written = write<Chip, Timer>(event, falls); !written) return written.error();
+        last_begin_ns_ = is_step ? begin_ns : due_ns;
+        if (((levels ^ levels_) & all_mark_bits) && !pass_mark(levels)) return rest();
+        if (Status written = write<Chip, Timer>({time_ns, levels}, falls); !written)
+            return written.error();
         ++taken_;
     }
     return true;
 }
 
-inline double Executor::target_pace() const {
+inline float Executor::target_pace() const {
     if (stop_requests_.load(std::memory_order_relaxed) != 0) return 0;
     if (!wanted_pace_ || on_trip_) return 1;
-    return static_cast<double>(wanted_pace_->load(std::memory_order_relaxed));
-}
-
-template <class Timer>
-std::optional<std::int64_t> Executor::wait_until_ns(std::int64_t time_ns) {
-    auto& clock = static_cast<Timer&>(clock_);
-    std::int64_t now_ns = last_end_ns_;
-    while (time_ns - now_ns > wait_slice_ns) {
-        if (target_pace() == 0) return std::nullopt;
-        now_ns = clock.wait_until_ns(now_ns + wait_slice_ns);
-    }
-    return clock.wait_until_ns(time_ns);
+    return wanted_pace_->load(std::memory_order_relaxed);
 }
 
 template <class Chip, class Timer>
-Status Executor::write(const LineEvent& event, gpio::LineMask falls) {
+Status Executor::write(LineEvent event, gpio::LineMask falls) {
     const gpio::LineMask toggled = levels_ ^ event.levels;
     const gpio::LineMask lines = toggled & ~all_mark_bits;
     const bool is_written = lines != 0 || (toggled == 0 && falls == 0);

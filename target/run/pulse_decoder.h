@@ -67,8 +67,8 @@ private:
     // Of a size that an index is shifted by, not multiplied with.
     struct alignas(128) AxisState {
         std::uint64_t steps = 0, reversals = 0;
-        std::int64_t rise_ns = never_ns, fall_ns = never_ns, turn_ns = never_ns;
-        std::int64_t held_from_ns = never_ns;  // the last rise, if there was no turn since
+        std::int64_t rise_ns = never_ns, fall_ns = never_ns;
+        std::int64_t turn_ns = never_ns;  // if it was after the last rise
         std::int64_t longest_interval_ns = -1;
         Shortest interval, high, low, setup, hold;
         bool last_positive = false;
@@ -81,8 +81,7 @@ private:
         state.fall_ns = time_ns;
     }
     static void turn(AxisState& state, std::int64_t time_ns) {
-        state.hold.keep(time_ns - state.held_from_ns);
-        state.held_from_ns = never_ns;
+        if (state.turn_ns == never_ns) state.hold.keep(time_ns - state.rise_ns);
         state.turn_ns = time_ns;
     }
 
@@ -93,18 +92,17 @@ private:
 };
 
 template <class Observer>
-void PulseDecoder::write(const gpio::LineWrite& write, const Observer& observe) {
+[[gnu::always_inline]] inline void PulseDecoder::write(const gpio::LineWrite& write,
+                                                       const Observer& observe) {
     const auto axis_of_lowest = [](gpio::LineMask bits) {
         return static_cast<std::size_t>(std::countr_zero(bits)) / 2;
     };
     ++writes_;
-    const gpio::LineMask edges = levels_ ^ write.levels;
-    for (gpio::LineMask steps = edges & all_step_bits; steps; steps &= steps - 1) {
-        const std::size_t axis = axis_of_lowest(steps);
-        if ((write.levels & step_bit(axis)) == 0) {
-            fall(axes_[axis], write.time_ns);
-            continue;
-        }
+    const gpio::LineMask edges = levels_ ^ write.levels, steps = edges & all_step_bits;
+    for (gpio::LineMask falls = steps & ~write.levels; falls; falls &= falls - 1)
+        fall(axes_[axis_of_lowest(falls)], write.time_ns);
+    for (gpio::LineMask rises = steps & write.levels; rises; rises &= rises - 1) {
+        const std::size_t axis = axis_of_lowest(rises);
         const bool positive = rise(axis, write.time_ns);
         observe(DecodedStep{write.time_ns, axis, positions_, positive});
         positions_[axis] += positive ? 1 : -1;
@@ -124,9 +122,12 @@ inline bool PulseDecoder::rise(std::size_t axis, std::int64_t time_ns) {
         if (state.last_positive != positive) ++state.reversals;
     }
     state.low.keep(time_ns - state.fall_ns);
-    state.setup.keep(time_ns - state.turn_ns);
+    if (state.turn_ns != never_ns) {
+        state.setup.keep(time_ns - state.turn_ns);
+        state.turn_ns = never_ns;
+    }
     ++state.steps;
-    state.rise_ns = state.held_from_ns = time_ns;
+    state.rise_ns = time_ns;
     state.last_positive = positive;
     return positive;
 }

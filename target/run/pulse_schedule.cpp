@@ -14,33 +14,36 @@ constexpr std::int64_t long_ago_ns = -3'600'000'000'000;
 
 constexpr std::size_t edges_of_step = 3;
 
+// Seldom, so its code is here once.
+[[gnu::noinline]] void add(std::vector<LineEvent>& events, LineEvent event) {
+    events.push_back(event);
+}
+
 }  // namespace
 
 PulseSchedule::PulseSchedule(const config::PulseTiming& timing, gpio::LineMask idle)
     : timing_(timing), idle_(idle), levels_(idle) {
     for (std::size_t i = 0; i < axes_.size(); ++i)
         axes_[i] = {long_ago_ns, long_ago_ns, (idle & direction_bit(i)) != 0};
-    open_.resize(2 * edges_of_step * config::axis_count);
 }
 
 void PulseSchedule::begin(std::int64_t delay_ns, std::vector<LineEvent>& events) {
-    events.push_back({0, levels_});
-    shift_ns_ += delay_ns;
-    shifts_.push_back({0, shift_ns_});
+    add(events, {0, levels_});
+    delay(-delay_ns, 0);
 }
 
-void PulseSchedule::append(std::span<const Step> steps, std::vector<LineEvent>& events) {
-    for (const Step& next : steps) {
-        if (next.axis == mark_axis)
-            mark(next, events);
-        else
-            step(next, events);
+[[gnu::always_inline]] inline void PulseSchedule::Open::emit_before(std::int64_t time_ns) {
+    std::size_t emitted = 0;
+    for (; emitted < count && edges[emitted].time_ns < time_ns; ++emitted) {
+        levels ^= edges[emitted].toggled;
+        *events++ = {edges[emitted].time_ns, levels};
     }
+    count -= emitted;
+    for (std::size_t i = 0; i < count; ++i) edges[i] = edges[emitted + i];
 }
 
 // What lies before the direction's edge is certain: no later step has any there.
-void PulseSchedule::step(const Step& step, std::vector<LineEvent>& events) {
-    make_room();
+[[gnu::always_inline]] inline void PulseSchedule::step(const Step& step, Open& open) {
     AxisState& axis = axes_[step.axis];
     const std::int64_t wanted_ns = step.time_ns + shift_ns_;
     std::int64_t rise_ns = std::max(wanted_ns, axis.fall_ns + timing_.low_ns);
@@ -48,16 +51,44 @@ void PulseSchedule::step(const Step& step, std::vector<LineEvent>& events) {
     if (turns)
         rise_ns = std::max(rise_ns,
                            axis.rise_ns + timing_.direction_hold_ns + timing_.direction_setup_ns);
-    delay(wanted_ns, rise_ns);
-    emit_before(rise_ns - timing_.direction_setup_ns, events);
-    if (turns) insert(rise_ns - timing_.direction_setup_ns, direction_bit(step.axis));
+    if (rise_ns > wanted_ns) delay(wanted_ns, rise_ns);
+    open.emit_before(rise_ns - timing_.direction_setup_ns);
+    if (turns) open.insert(rise_ns - timing_.direction_setup_ns, direction_bit(step.axis));
     axis = {rise_ns, rise_ns + timing_.high_ns, step.positive};
-    insert(axis.rise_ns, step_bit(step.axis));
-    insert(axis.fall_ns, step_bit(step.axis));
+    open.insert(axis.rise_ns, step_bit(step.axis));
+    open.insert(axis.fall_ns, step_bit(step.axis));
 }
 
-void PulseSchedule::delay(std::int64_t wanted_ns, std::int64_t due_ns) {
-    if (due_ns <= wanted_ns) return;
+void PulseSchedule::append(std::span<const Step> steps, std::vector<LineEvent>& events) {
+    constexpr std::size_t most_at_once = 64;
+    while (!steps.empty()) {
+        const auto now = steps.first(std::min(most_at_once, steps.size()));
+        steps = steps.subspan(now.size());
+        Open open = this->open(now.size(), events);
+        for (const Step& next : now) {
+            if (next.axis == mark_axis)
+                open = mark(next, open);
+            else
+                step(next, open);
+        }
+        close(open, events);
+    }
+}
+
+PulseSchedule::Open PulseSchedule::open(std::size_t steps, std::vector<LineEvent>& events) {
+    const std::size_t most = open_count_ + edges_of_step * steps, written = events.size();
+    if (edges_.size() < most) edges_.resize(most);
+    events.resize(written + most);
+    return {edges_.data(), open_count_, levels_, events.data() + written};
+}
+
+void PulseSchedule::close(const Open& open, std::vector<LineEvent>& events) {
+    events.resize(static_cast<std::size_t>(open.events - events.data()));
+    open_count_ = open.count;
+    levels_ = open.levels;
+}
+
+[[gnu::noinline]] void PulseSchedule::delay(std::int64_t wanted_ns, std::int64_t due_ns) {
     shift_ns_ += due_ns - wanted_ns;
     shifts_.push_back({due_ns, shift_ns_});
 }
@@ -69,46 +100,35 @@ std::int64_t PulseSchedule::quiet_ns(std::int64_t from_ns) const {
     return quiet_ns;
 }
 
-void PulseSchedule::mark(const Step& step, std::vector<LineEvent>& events) {
-    make_room();
+PulseSchedule::Open PulseSchedule::mark(const Step& step, Open open) {
     const std::int64_t wanted_ns = std::max<std::int64_t>(0, step.time_ns + shift_ns_);
     const bool is_gate = step.positive;
     std::int64_t time_ns = std::max(wanted_ns, last_mark_ns_ + 1);
     // What falls at the gate itself would be written after it.
     if (is_gate) time_ns = std::max(time_ns, quiet_ns(0) + 1);
-    delay(wanted_ns, time_ns);
+    if (time_ns > wanted_ns) delay(wanted_ns, time_ns);
     last_mark_ns_ = time_ns;
-    insert(time_ns, is_gate ? all_mark_bits : mark_bit);
-    emit_before(time_ns - timing_.direction_setup_ns, events);
+    open.insert(time_ns, is_gate ? all_mark_bits : mark_bit);
+    open.emit_before(time_ns - timing_.direction_setup_ns);
+    return open;
 }
 
-void PulseSchedule::make_room() {
-    if (open_.size() - open_count_ < edges_of_step) open_.resize(2 * open_.size());
-}
-
-void PulseSchedule::insert_between(std::int64_t time_ns, gpio::LineMask toggled) {
-    std::size_t place = open_count_;
-    while (place > 0 && open_[place - 1].time_ns > time_ns) --place;
-    if (place > 0 && open_[place - 1].time_ns == time_ns) {
-        open_[place - 1].toggled ^= toggled;
-        return;
+std::size_t PulseSchedule::insert_between(Edge* edges, std::size_t count, Edge edge) {
+    std::size_t place = count;
+    while (place > 0 && edges[place - 1].time_ns > edge.time_ns) --place;
+    if (place > 0 && edges[place - 1].time_ns == edge.time_ns) {
+        edges[place - 1].toggled ^= edge.toggled;
+        return count;
     }
-    const auto from = open_.begin() + static_cast<std::ptrdiff_t>(place);
-    const auto end = open_.begin() + static_cast<std::ptrdiff_t>(open_count_++);
-    std::copy_backward(from, end, end + 1);
-    *from = {time_ns, toggled};
+    std::copy_backward(edges + place, edges + count, edges + count + 1);
+    edges[place] = edge;
+    return count + 1;
 }
 
 void PulseSchedule::emit_before(std::int64_t time_ns, std::vector<LineEvent>& events) {
-    gpio::LineMask levels = levels_;
-    std::size_t count = 0;
-    for (; count < open_count_ && open_[count].time_ns < time_ns; ++count) {
-        levels ^= open_[count].toggled;
-        events.push_back({open_[count].time_ns, levels});
-    }
-    levels_ = levels;
-    for (std::size_t i = count; i < open_count_; ++i) open_[i - count] = open_[i];
-    open_count_ -= count;
+    Open open = this->open(0, events);
+    open.emit_before(time_ns);
+    close(open, events);
 }
 
 void PulseSchedule::finish(std::int64_t end_ns, std::vector<LineEvent>& events) {
@@ -116,7 +136,7 @@ void PulseSchedule::finish(std::int64_t end_ns, std::vector<LineEvent>& events) 
     emit_before(last_ns, events);
     open_count_ = 0;
     levels_ &= all_mark_bits;
-    events.push_back({last_ns, levels_});
+    add(events, {last_ns, levels_});
 }
 
 void PulseSchedule::finish_as_begun(std::vector<LineEvent>& events) {
@@ -124,8 +144,8 @@ void PulseSchedule::finish_as_begun(std::vector<LineEvent>& events) {
     emit_before(last_ns, events);
     open_count_ = 0;
     levels_ = idle_;
-    events.push_back({last_ns, levels_});
-    events.push_back({last_ns + timing_.direction_setup_ns, levels_});
+    add(events, {last_ns, levels_});
+    add(events, {last_ns + timing_.direction_setup_ns, levels_});
 }
 
 std::vector<Shift> PulseSchedule::take_shifts() {

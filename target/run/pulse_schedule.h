@@ -95,20 +95,33 @@ private:
         bool positive;
     };
 
-    void step(const Step& step, std::vector<LineEvent>& events);
-    void mark(const Step& step, std::vector<LineEvent>& events);
+    // Edges that wait, in order of time, and where the events go that they become. A copy of what is kept between calls,
+    // which stays in registers: there are hundreds of millions in a print.
+    struct Open {
+        Edge* edges;
+        std::size_t count;
+        gpio::LineMask levels;
+        LineEvent* events;
+
+        void insert(std::int64_t time_ns, gpio::LineMask toggled) {
+            if (count == 0 || edges[count - 1].time_ns < time_ns)
+                edges[count++] = {time_ns, toggled};
+            else
+                count = insert_between(edges, count, {time_ns, toggled});
+        }
+        void emit_before(std::int64_t time_ns);
+    };
+    // The new count.
+    static std::size_t insert_between(Edge* edges, std::size_t count, Edge edge);
+
+    // With room for the edges of so many steps and marks; close() cuts off what is not used.
+    Open open(std::size_t steps, std::vector<LineEvent>& events);
+    void close(const Open& open, std::vector<LineEvent>& events);
+    void step(const Step& step, Open& open);
+    Open mark(const Step& step, Open open);
     void delay(std::int64_t wanted_ns, std::int64_t due_ns);
     // When all edges of the steps so far are over and drivers have taken them.
     std::int64_t quiet_ns(std::int64_t from_ns) const;
-    void insert(std::int64_t time_ns, gpio::LineMask toggled) {
-        if (open_count_ == 0 || open_[open_count_ - 1].time_ns < time_ns)
-            open_[open_count_++] = {time_ns, toggled};
-        else
-            insert_between(time_ns, toggled);
-    }
-    void insert_between(std::int64_t time_ns, gpio::LineMask toggled);
-    // For the edges of a step or a mark.
-    void make_room();
     void emit_before(std::int64_t time_ns, std::vector<LineEvent>& events);
 
     config::PulseTiming timing_;
@@ -116,8 +129,8 @@ private:
     std::int64_t shift_ns_ = 0;
     std::int64_t last_mark_ns_ = -1;
     std::array<AxisState, config::axis_count> axes_;
-    std::vector<Edge> open_;  // in order of time, the first so many; a few edges an axis at most
-    std::size_t open_count_ = 0;
+    std::vector<Edge> edges_;
+    std::size_t open_count_ = 0;  // of them; a few edges an axis at most
     std::vector<Shift> shifts_;
 };
 

@@ -4,22 +4,25 @@
 
 namespace lyr::run {
 
-SimulatedLines::SimulatedLines(std::size_t line_count, const SimulatedClock& clock,
-                               ChecksBeside& checks, gpio::MockChip::Fault fault)
-    : checks_(checks),
-      chip_(
-          line_count, clock, [this](const gpio::LineWrite& write) { decode(write); },
-          std::move(fault)) {}
-
-void SimulatedLines::bind(Executor& executor) {
-    executor.bind<gpio::MockChip, SimulatedClock>();
-}
-
-void SimulatedLines::decode(const gpio::LineWrite& write) {
+inline void SimulatedLines::decode(const gpio::LineWrite& write) {
     if (executor_ && executor_->on_trip()) return;
     const std::int64_t behind_ns = executor_ ? executor_->behind_ns() : 0;
     decoder_.write({write.time_ns - behind_ns, write.changed, write.levels},
                    [this](const DecodedStep& step) { checks_.step(step); });
+}
+
+inline void SimulatedLines::Decoded::operator()(const gpio::LineWrite& write) const {
+    lines->decode(write);
+}
+
+SimulatedLines::SimulatedLines(std::size_t line_count, const SimulatedClock& clock,
+                               ChecksBeside& checks, gpio::MockChip::Fault fault)
+    : checks_(checks), chip_(line_count, clock, Decoded{this}, std::move(fault)) {}
+
+SimulatedLines::~SimulatedLines() = default;
+
+void SimulatedLines::bind(Executor& executor) {
+    executor.bind<gpio::MockLines<Decoded, SimulatedClock>, SimulatedClock>();
 }
 
 }  // namespace lyr::run

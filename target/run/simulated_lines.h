@@ -19,8 +19,9 @@ class SimulatedLines {
 public:
     SimulatedLines(std::size_t line_count, const SimulatedClock& clock, ChecksBeside& checks,
                    gpio::MockChip::Fault fault);
+    ~SimulatedLines();
 
-    gpio::MockChip& chip() { return chip_; }
+    gpio::GpioChip& chip() { return chip_; }
     // Whose writes these are; none: the chip's own, which are made when it is released.
     void belong_to(const Executor* executor) { executor_ = executor; }
     // To this chip and the clock, of an executor that writes on them itself.
@@ -28,12 +29,18 @@ public:
     const PulseDecoder& decoder() const { return decoder_; }
 
 private:
+    struct Decoded {
+        SimulatedLines* lines;
+        explicit operator bool() const { return true; }
+        void operator()(const gpio::LineWrite& write) const;
+    };
+
     void decode(const gpio::LineWrite& write);
 
     ChecksBeside& checks_;
     PulseDecoder decoder_;
     const Executor* executor_ = nullptr;
-    gpio::MockChip chip_;
+    gpio::MockLines<Decoded, SimulatedClock> chip_;
 };
 
 }  // namespace lyr::run

@@ -48,7 +48,7 @@ TEST_CASE("heating 4: heaters that a killed print left on are switched off, by l
     const Status off = switch_off(printer, [&](std::span<const gpio::LineRequest> requests) {
         for (const gpio::LineRequest& request : requests) asked.push_back(request.purpose);
         return Result<std::unique_ptr<gpio::GpioChip>>(
-            std::make_unique<gpio::MockChip>(requests.size(), clock, gpio::MockChip::Observer()));
+            std::make_unique<gpio::MockChip>(requests.size(), clock, gpio::LineObserver()));
     });
     CHECK(off.ok());
     CHECK(asked.size() == 2 * config::axis_count + 1);
