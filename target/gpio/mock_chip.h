@@ -55,6 +55,7 @@ public:
 
     MockLines(std::size_t line_count, const Timer& clock, Observer observer, Fault fault = {})
         : line_count_(line_count),
+          lines_(all_lines(line_count)),
           clock_(clock),
           observer_(std::move(observer)),
           faults_(std::move(fault)) {}
@@ -64,7 +65,7 @@ public:
     Status write(LineMask changed, LineMask levels) override {
         Status written = faults_.may_fail() ? faults_.next() : Status(Done{});
         if (!written) return written;
-        changed &= all_lines(line_count_);
+        changed &= lines_;
         levels_ = (levels_ & ~changed) | (levels & changed);
         if (observer_) observer_(LineWrite{clock_.now_ns(), changed, levels_});
         return written;
@@ -75,6 +76,7 @@ public:
 
 private:
     std::size_t line_count_;
+    LineMask lines_;
     const Timer& clock_;
     Observer observer_;
     LineFaults faults_;

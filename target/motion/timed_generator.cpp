@@ -110,31 +110,34 @@ bool TimedGenerator::begin_piece(std::size_t index) {
     return false;
 }
 
-void TimedGenerator::take(std::size_t index, StepEvent& event) {
+inline bool TimedGenerator::take(std::size_t index) {
     Motor& motor = motors_[index];
-    const auto bit = static_cast<std::uint8_t>(1u << index);
-    const int direction = motor.walk.direction();
-    event.motors |= bit;
-    if (direction > 0) event.positive |= bit;
-    counts_[index] += direction;
+    const bool rises = motor.walk.direction() > 0;
+    counts_[index] += rises ? 1 : -1;
     if (motor.next < motor.end)
         next_ns_[index] = motor.times_ns[motor.next++];
     else
         find(index);
+    return rises;
 }
 
 std::size_t TimedGenerator::next(std::span<StepEvent> events) {
     std::size_t written = 0;
     while (written < events.size()) {
-        const std::int64_t soonest_ns = *std::min_element(next_ns_.begin(), next_ns_.end());
+        const auto [x_ns, y_ns, z_ns, e_ns] = next_ns_;
+        const std::int64_t soonest_ns = std::min(std::min(x_ns, y_ns), std::min(z_ns, e_ns));
         if (soonest_ns >= wait_ns_) break;
         // Rounding may put the first step of a piece before the last of the one before it.
         last_ns_ = std::max(last_ns_, soonest_ns + lead_ns_);
-        StepEvent event{last_ns_};
+        unsigned motors = 0, positive = 0;
         // Four branches that are guessed are quicker than the number of the soonest, which is waited for.
         for (std::size_t motor = 0; motor < motor_count; ++motor)
-            if (next_ns_[motor] == soonest_ns) take(motor, event);
-        events[written++] = event;
+            if (next_ns_[motor] == soonest_ns) {
+                motors |= 1u << motor;
+                positive |= unsigned{take(motor)} << motor;
+            }
+        events[written++] = {last_ns_, static_cast<std::uint8_t>(motors),
+                             static_cast<std::uint8_t>(positive)};
     }
     return written;
 }

@@ -57,7 +57,8 @@ private:
     void find_waiting();
     void note_waiting();
     bool begin_piece(std::size_t motor);
-    void take(std::size_t motor, StepEvent& event);
+    // Whether that step goes upwards.
+    bool take(std::size_t motor);
 
     std::array<Motor, motor_count> motors_;
     std::array<std::int64_t, motor_count> next_ns_;  // of a motor's next step, in the plan's time

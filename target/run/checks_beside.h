@@ -18,7 +18,7 @@ namespace lyr::run {
 
 class ChecksBeside {
 public:
-    static constexpr std::size_t steps_in_batch = 2'048, most_waiting = 2;
+    static constexpr std::size_t steps_in_batch = 2'048, most_waiting = 4;
 
     // The checks' source of curves is called on their thread.
     ChecksBeside(const config::Printer& printer, CurveSource source);

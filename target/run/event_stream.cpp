@@ -25,14 +25,19 @@ Result<EventStream> EventStream::open(format::Reader reader, const std::string& 
 }
 
 Result<bool> EventStream::next(std::vector<LineEvent>& events) {
+    batch_.clear();
+    const Result<bool> more = next(batch_);
+    if (!more) return more.error();
+    schedule(batch_, *more ? std::nullopt : std::optional(steps_.time_ns()), events);
+    return *more;
+}
+
+void EventStream::schedule(std::span<const Step> steps, std::optional<std::int64_t> end_ns,
+                           std::vector<LineEvent>& events) {
     if (!begun_) schedule_.begin(driver_wake_ns, events);
     begun_ = true;
-    batch_.clear();
-    const Result<bool> more = steps_.next(batch_);
-    if (!more) return more.error();
-    schedule_.append(batch_, events);
-    if (!*more) schedule_.finish(steps_.time_ns(), events);
-    return *more;
+    schedule_.append(steps, events);
+    if (end_ns) schedule_.finish(*end_ns, events);
 }
 
 }  // namespace lyr::run

@@ -31,6 +31,11 @@ public:
 
     // Appends the next events; false: these were the last.
     Result<bool> next(std::vector<LineEvent>& events);
+    // The halves of that, which share nothing: the next steps, and the events that they become; the last ones with the time
+    // at which they end.
+    Result<bool> next(std::vector<Step>& steps) { return steps_.next(steps); }
+    void schedule(std::span<const Step> steps, std::optional<std::int64_t> end_ns,
+                  std::vector<LineEvent>& events);
 
     void heed_speed(const std::atomic<float>& factor) { steps_.heed_speed(factor); }
     void begin_drawn_back(double mm) { steps_.begin_drawn_back(mm); }

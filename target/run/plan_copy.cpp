@@ -130,6 +130,18 @@ std::int64_t PlanCopy::add_to(Series& c, std::int64_t plan_ns) const {
     return plan_ns + static_cast<std::int64_t>(std::min(left_ns, reach_ns(a1, a2, a3)));
 }
 
+// By Horner's rule once for each power.
+std::int64_t PlanSum::add_to(Series& c, double share, const PlanPieces& pieces,
+                             std::int64_t plan_ns) {
+    if (plan_ns < begin_ns_ || plan_ns >= end_ns_) sought_mm(pieces, plan_ns);
+    Series here = c_;
+    const auto since_ns = static_cast<double>(plan_ns - begin_ns_);
+    for (std::size_t i = 0; i + 1 < here.size(); ++i)
+        for (std::size_t k = here.size() - 1; k-- > i;) here[k] += since_ns * here[k + 1];
+    for (std::size_t i = 0; i < here.size(); ++i) c[i] += share * here[i];
+    return end_ns_;
+}
+
 double PlanSum::sought_mm(const PlanPieces& pieces, std::int64_t plan_ns) {
     double sum_mm = 0;
     begin_ns_ = plan_ns;

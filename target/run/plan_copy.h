@@ -34,6 +34,10 @@ using PlanPieces = std::deque<PlanPiece>;
 using Series = std::array<double, 6>;
 inline constexpr double series_mm = 1e-7;
 
+inline double value_of(const Series& c, double t) {
+    return c[0] + t * (c[1] + t * (c[2] + t * (c[3] + t * (c[4] + t * c[5]))));
+}
+
 class PlanCopy {
 public:
     PlanCopy(std::size_t channel, double weight, std::int64_t offset_ns)
@@ -103,8 +107,10 @@ public:
     double at_mm(const PlanPieces& pieces, std::int64_t plan_ns) {
         if (plan_ns < begin_ns_ || plan_ns >= end_ns_) return sought_mm(pieces, plan_ns);
         const auto t = static_cast<double>(plan_ns - begin_ns_);
-        return c_[0] + t * (c_[1] + t * (c_[2] + t * (c_[3] + t * (c_[4] + t * c_[5]))));
+        return value_of(c_, t);
     }
+    // Adds its series about that time, times `share`, and says until when that holds.
+    std::int64_t add_to(Series& c, double share, const PlanPieces& pieces, std::int64_t plan_ns);
 
 private:
     double sought_mm(const PlanPieces& pieces, std::int64_t plan_ns);

@@ -44,11 +44,11 @@ struct PulseFigures {
 
 class PulseDecoder {
 public:
-    // `observe` is called with each DecodedStep.
+    // All lines have these levels from now on. `observe` is called with each DecodedStep.
     template <class Observer>
-    void write(const gpio::LineWrite& write, const Observer& observe);
+    void write(std::int64_t time_ns, gpio::LineMask levels, const Observer& observe);
     void write(const gpio::LineWrite& line_write) {
-        write(line_write, [](const DecodedStep&) {});
+        write(line_write.time_ns, line_write.levels, [](const DecodedStep&) {});
     }
 
     const StepPositions& positions() const { return positions_; }
@@ -92,24 +92,24 @@ private:
 };
 
 template <class Observer>
-[[gnu::always_inline]] inline void PulseDecoder::write(const gpio::LineWrite& write,
+[[gnu::always_inline]] inline void PulseDecoder::write(std::int64_t time_ns, gpio::LineMask levels,
                                                        const Observer& observe) {
     const auto axis_of_lowest = [](gpio::LineMask bits) {
         return static_cast<std::size_t>(std::countr_zero(bits)) / 2;
     };
     ++writes_;
-    const gpio::LineMask edges = levels_ ^ write.levels, steps = edges & all_step_bits;
-    for (gpio::LineMask falls = steps & ~write.levels; falls; falls &= falls - 1)
-        fall(axes_[axis_of_lowest(falls)], write.time_ns);
-    for (gpio::LineMask rises = steps & write.levels; rises; rises &= rises - 1) {
+    const gpio::LineMask edges = levels_ ^ levels, steps = edges & all_step_bits;
+    for (gpio::LineMask falls = steps & ~levels; falls; falls &= falls - 1)
+        fall(axes_[axis_of_lowest(falls)], time_ns);
+    for (gpio::LineMask rises = steps & levels; rises; rises &= rises - 1) {
         const std::size_t axis = axis_of_lowest(rises);
-        const bool positive = rise(axis, write.time_ns);
-        observe(DecodedStep{write.time_ns, axis, positions_, positive});
+        const bool positive = rise(axis, time_ns);
+        observe(DecodedStep{time_ns, axis, positions_, positive});
         positions_[axis] += positive ? 1 : -1;
     }
     for (gpio::LineMask turns = edges & all_direction_bits; turns; turns &= turns - 1)
-        turn(axes_[axis_of_lowest(turns)], write.time_ns);
-    levels_ = write.levels;
+        turn(axes_[axis_of_lowest(turns)], time_ns);
+    levels_ = levels;
 }
 
 inline bool PulseDecoder::rise(std::size_t axis, std::int64_t time_ns) {

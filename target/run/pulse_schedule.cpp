@@ -64,7 +64,7 @@ void PulseSchedule::append(std::span<const Step> steps, std::vector<LineEvent>& 
     while (!steps.empty()) {
         const auto now = steps.first(std::min(most_at_once, steps.size()));
         steps = steps.subspan(now.size());
-        Open open = this->open(now.size(), events);
+        Open open = this->open(now.size());
         for (const Step& next : now) {
             if (next.axis == mark_axis)
                 open = mark(next, open);
@@ -75,15 +75,17 @@ void PulseSchedule::append(std::span<const Step> steps, std::vector<LineEvent>& 
     }
 }
 
-PulseSchedule::Open PulseSchedule::open(std::size_t steps, std::vector<LineEvent>& events) {
-    const std::size_t most = open_count_ + edges_of_step * steps, written = events.size();
-    if (edges_.size() < most) edges_.resize(most);
-    events.resize(written + most);
-    return {edges_.data(), open_count_, levels_, events.data() + written};
+PulseSchedule::Open PulseSchedule::open(std::size_t steps) {
+    const std::size_t most = open_count_ + edges_of_step * steps;
+    if (edges_.size() < most) {
+        edges_.resize(most);
+        events_.resize(most);
+    }
+    return {edges_.data(), open_count_, levels_, events_.data()};
 }
 
 void PulseSchedule::close(const Open& open, std::vector<LineEvent>& events) {
-    events.resize(static_cast<std::size_t>(open.events - events.data()));
+    events.insert(events.end(), events_.data(), open.events);
     open_count_ = open.count;
     levels_ = open.levels;
 }
@@ -126,7 +128,7 @@ std::size_t PulseSchedule::insert_between(Edge* edges, std::size_t count, Edge e
 }
 
 void PulseSchedule::emit_before(std::int64_t time_ns, std::vector<LineEvent>& events) {
-    Open open = this->open(0, events);
+    Open open = this->open(0);
     open.emit_before(time_ns);
     close(open, events);
 }

@@ -114,8 +114,8 @@ private:
     // The new count.
     static std::size_t insert_between(Edge* edges, std::size_t count, Edge edge);
 
-    // With room for the edges of so many steps and marks; close() cuts off what is not used.
-    Open open(std::size_t steps, std::vector<LineEvent>& events);
+    // With room for the edges of so many steps and marks; close() appends the events that there are.
+    Open open(std::size_t steps);
     void close(const Open& open, std::vector<LineEvent>& events);
     void step(const Step& step, Open& open);
     Open mark(const Step& step, Open open);
@@ -131,6 +131,7 @@ private:
     std::array<AxisState, config::axis_count> axes_;
     std::vector<Edge> edges_;
     std::size_t open_count_ = 0;  // of them; a few edges an axis at most
+    std::vector<LineEvent> events_;
     std::vector<Shift> shifts_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace lyr::run {
 namespace {
@@ -24,9 +25,11 @@ ShapedPlan::ShapedPlan(const config::Printer& printer) : machine_(moves::kinemat
     bed_ = shaping.bed;
     const motion::Point origin{printer.start_mm[0], printer.start_mm[1], printer.start_mm[2]};
     mixes_all_ = bed_ || std::holds_alternative<motion::Delta>(machine_);
-    shares_ = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    if (std::holds_alternative<motion::CoreXy>(machine_))
-        shares_ = {{{1, 1, 0}, {1, -1, 0}, {0, 0, 1}}};
+    shares_ = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
+    if (std::holds_alternative<motion::CoreXy>(machine_)) {
+        shares_[motion::axis_x] = {1, 1, 0, 0};
+        shares_[motion::axis_y] = {1, -1, 0, 0};
+    }
     std::int64_t ahead_ns = 0, behind_ns = 0;
     for (std::size_t i = 0; i < motion::axis_count; ++i) {
         steps_per_mm_[i] = printer.axes[i].steps_per_mm;
@@ -38,7 +41,7 @@ ShapedPlan::ShapedPlan(const config::Printer& printer) : machine_(moves::kinemat
         }
         axes_.emplace_back(std::move(copies));
     }
-    for (std::size_t motor = 0; motor < origin_mm_.size(); ++motor)
+    for (std::size_t motor = 0; motor < motion::extruder_motor; ++motor)
         origin_mm_[motor] = carried_mm(motor, origin);
     lead_ns_ = ahead_ns;
     reach_ns_ = ahead_ns + behind_ns;
@@ -71,6 +74,18 @@ double ShapedPlan::carried_mm(std::size_t motor, const motion::Point& at) const 
     if (!std::holds_alternative<motion::CoreXy>(machine_))
         return motor == motion::axis_x ? at.x : at.y;
     return motor == motion::axis_x ? at.x + at.y : at.x - at.y;
+}
+
+double ShapedPlan::sought_steps(std::size_t motor, std::int64_t plan_ns) {
+    if (mixes_all_ && motor != motion::extruder_motor) return mixed_steps(motor, plan_ns);
+    MotorSeries& series = series_[motor];
+    series = {plan_ns, std::numeric_limits<std::int64_t>::max(), {-origin_mm_[motor]}};
+    for (std::size_t axis = 0; axis < axes_.size(); ++axis)
+        if (const double share = shares_[motor][axis]; share != 0)
+            series.end_ns =
+                std::min(series.end_ns, axes_[axis].add_to(series.steps, share, pieces_, plan_ns));
+    for (double& power : series.steps) power *= steps_per_mm_[motor];
+    return series.steps[0];
 }
 
 double ShapedPlan::mixed_steps(std::size_t motor, std::int64_t plan_ns) {

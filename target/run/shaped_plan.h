@@ -28,18 +28,22 @@ public:
     // At a time of the steps, which lags behind the plan's by lead_ns().
     double motor_steps(std::size_t motor, std::int64_t time_ns) {
         const std::int64_t plan_ns = time_ns - lead_ns_;
-        if (motor == motion::extruder_motor)
-            return steps_per_mm_[motor] * shaped_mm(motion::axis_e, plan_ns);
-        if (mixes_all_) return mixed_steps(motor, plan_ns);
-        double at_mm = -origin_mm_[motor];
-        for (std::size_t axis = 0; axis < shares_[motor].size(); ++axis)
-            if (shares_[motor][axis] != 0) at_mm += shares_[motor][axis] * shaped_mm(axis, plan_ns);
-        return steps_per_mm_[motor] * at_mm;
+        const MotorSeries& known = series_[motor];
+        if (plan_ns < known.begin_ns || plan_ns >= known.end_ns)
+            return sought_steps(motor, plan_ns);
+        return value_of(known.steps, static_cast<double>(plan_ns - known.begin_ns));
     }
     std::int64_t lead_ns() const { return lead_ns_; }
     std::int64_t reach_ns() const { return reach_ns_; }
 
 private:
+    // Of a motor that is a sum of axes: what it does from a time on, for a while.
+    struct MotorSeries {
+        std::int64_t begin_ns = 0, end_ns = 0;
+        Series steps{};
+    };
+
+    double sought_steps(std::size_t motor, std::int64_t plan_ns);
     double shaped_mm(std::size_t axis, std::int64_t plan_ns) {
         return axes_[axis].at_mm(pieces_, plan_ns);
     }
@@ -52,9 +56,10 @@ private:
     std::shared_ptr<const motion::BedMesh> bed_;
     std::vector<PlanSum> axes_;
     AxisValues steps_per_mm_{};
-    std::array<double, 3> origin_mm_{};              // of the motors
-    bool mixes_all_ = false;                         // a delta's carriages, a bed's mesh
-    std::array<std::array<double, 3>, 3> shares_{};  // otherwise: of the axes, in each motor
+    AxisValues origin_mm_{};              // of the motors
+    bool mixes_all_ = false;              // a delta's carriages, a bed's mesh
+    std::array<AxisValues, 4> shares_{};  // otherwise: of the axes, in each motor
+    std::array<MotorSeries, 4> series_;
     std::int64_t lead_ns_ = 0, reach_ns_ = 0;
     std::int64_t kept_until_ns_ = 0;  // of the steps: no piece can be forgotten before
     PlanPieces pieces_;

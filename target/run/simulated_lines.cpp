@@ -7,7 +7,7 @@ namespace lyr::run {
 inline void SimulatedLines::decode(const gpio::LineWrite& write) {
     if (executor_ && executor_->on_trip()) return;
     const std::int64_t behind_ns = executor_ ? executor_->behind_ns() : 0;
-    decoder_.write({write.time_ns - behind_ns, write.changed, write.levels},
+    decoder_.write(write.time_ns - behind_ns, write.levels,
                    [this](const DecodedStep& step) { checks_.step(step); });
 }
 

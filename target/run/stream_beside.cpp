@@ -5,7 +5,9 @@
 namespace lyr::run {
 namespace {
 
-// Of a portion: two edges a step and some of direction; a vector that grows would take twice as much.
+// Of a batch; a vector that grows would take twice as much.
+constexpr std::size_t usual_steps = 2'304;
+// Two edges a step, and some of direction.
 constexpr std::size_t usual_events = 5'120;
 
 }  // namespace
@@ -31,7 +33,20 @@ const Portion& StreamBeside::next() {
         group_ = *made_.pop();
         given_ = 0;
     }
-    return group_.portions[given_++];
+    Batch& batch = group_.batches[given_++];
+    portion_.events.clear();
+    portion_.events.reserve(usual_events);
+    portion_.more = batch.more;
+    const bool is_last = batch.more && !*batch.more;
+    if (batch.more)
+        stream_.schedule(batch.steps, is_last ? std::optional(batch.end_ns) : std::nullopt,
+                         portion_.events);
+    portion_.moves.swap(batch.moves);
+    portion_.begun.swap(batch.begun);
+    portion_.shifts = stream_.schedule().take_shifts();
+    portion_.shift_ns = stream_.schedule().shift_ns();
+    portion_.layer = batch.layer;
+    return portion_;
 }
 
 void StreamBeside::ask(Group group) {
@@ -43,7 +58,7 @@ void StreamBeside::ask(Group group) {
 void StreamBeside::work() {
     while (std::optional<Group> group = asked_.pop()) {
         make(*group);
-        const Result<bool>& more = group->portions[group->count - 1].more;
+        const Result<bool>& more = group->batches[group->count - 1].more;
         const bool is_last = !more || !*more;
         made_.push(std::move(*group));
         if (is_last) return;
@@ -55,22 +70,21 @@ void StreamBeside::make(Group& group) {
     const std::int64_t begin_ns = stream_.steps().time_ns();
     group.count = 0;
     do {
-        Portion& portion = group.portions[group.count++];
-        make(portion);
-        if (!portion.more || !*portion.more) return;
+        Batch& batch = group.batches[group.count++];
+        make(batch);
+        if (!batch.more || !*batch.more) return;
     } while (group.count < portions_in_group &&
              stream_.steps().time_ns() - begin_ns < longest_group_ns_);
 }
 
-void StreamBeside::make(Portion& portion) {
-    portion.events.clear();
-    portion.events.reserve(usual_events);
-    portion.more = stream_.next(portion.events);
-    portion.moves = stream_.steps().moves();
-    portion.begun = stream_.steps().begun();
-    portion.shifts = stream_.schedule().take_shifts();
-    portion.shift_ns = stream_.schedule().shift_ns();
-    portion.layer = stream_.steps().layer();
+void StreamBeside::make(Batch& batch) {
+    batch.steps.clear();
+    batch.steps.reserve(usual_steps);
+    batch.more = stream_.next(batch.steps);
+    batch.moves = stream_.steps().moves();
+    batch.begun = stream_.steps().begun();
+    batch.layer = stream_.steps().layer();
+    batch.end_ns = stream_.steps().time_ns();
 }
 
 }  // namespace lyr::run

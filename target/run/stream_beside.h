@@ -1,5 +1,5 @@
-// The line events of a simulation, made on a thread of their own while those before them are written: they are half of
-// the work.
+// The line events of a simulation. Their steps are made on a thread of their own while those before them are written: they
+// are half of the work.
 //
 // Contract
 //  1. next() gives what EventStream::next() would: the same events, in portions of the same length.
@@ -19,7 +19,7 @@
 
 namespace lyr::run {
 
-// What a batch of events brings with it.
+// A batch of events, and what it brings with it.
 struct Portion {
     std::vector<LineEvent> events;
     std::vector<motion::PlannedMove> moves;  // that it begins
@@ -45,23 +45,32 @@ public:
     const Portion& next();
 
 private:
+    struct Batch {
+        std::vector<Step> steps;
+        std::vector<motion::PlannedMove> moves;
+        std::vector<LayerBegin> begun;
+        std::uint32_t layer = 0;
+        Result<bool> more = true;
+        std::int64_t end_ns = 0;  // if there are no more
+    };
     struct Group {
         float speed_factor = 1;  // that it is made with
-        std::size_t count = 0;   // of its portions
-        std::array<Portion, portions_in_group> portions;
+        std::size_t count = 0;   // of its batches
+        std::array<Batch, portions_in_group> batches;
     };
 
     void ask(Group group);
     void work();
     void make(Group& group);
-    void make(Portion& portion);
+    void make(Batch& batch);
 
-    EventStream stream_;
+    EventStream stream_;  // the thread makes steps, next() events of them
     const std::atomic<float>& wanted_factor_;
     const std::int64_t longest_group_ns_;
     std::atomic<float> factor_{1};  // of the thread
     Group group_;                   // that is given out
     std::size_t given_ = 0;
+    Portion portion_;
     Handover<Group> asked_{ahead + 1}, made_{ahead + 1};
     std::thread thread_;
 };

@@ -30,15 +30,11 @@ struct Decoded {
 };
 
 void decode(const std::vector<LineEvent>& events, Decoded& decoded) {
-    gpio::LineMask before = 0;
-    for (const LineEvent& event : events) {
-        decoded.decoder.write(
-            {event.time_ns, before ^ event.levels, event.levels}, [&](const DecodedStep& step) {
-                decoded.steps.push_back(
-                    {step.time_ns, static_cast<std::uint8_t>(step.axis), step.positive});
-            });
-        before = event.levels;
-    }
+    for (const LineEvent& event : events)
+        decoded.decoder.write(event.time_ns, event.levels, [&](const DecodedStep& step) {
+            decoded.steps.push_back(
+                {step.time_ns, static_cast<std::uint8_t>(step.axis), step.positive});
+        });
 }
 
 void check_times_of_driver(const PulseDecoder& decoder) {
