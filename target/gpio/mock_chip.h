@@ -62,7 +62,7 @@ public:
     ~MockLines() override { (void)MockLines::release(); }
 
     std::size_t line_count() const override { return line_count_; }
-    Status write(LineMask changed, LineMask levels) override {
+    [[gnu::always_inline]] Status write(LineMask changed, LineMask levels) override {
         Status written = faults_.may_fail() ? faults_.next() : Status(Done{});
         if (!written) return written;
         changed &= lines_;

@@ -108,10 +108,8 @@ private:
     Result<bool> run(std::span<const LineEvent> events);
     // Of a long wait. False: left on request.
     bool wait_for_last_slice(std::int64_t time_ns);
-    // `falls`: the step lines that would end their pulse, if they had not at rest.
-    template <class Chip, class Timer>
-    Status write(LineEvent event, gpio::LineMask falls);
-    void count(gpio::LineMask toggled, gpio::LineMask levels);
+    // Of step lines that have risen.
+    static void count(gpio::LineMask rises, gpio::LineMask levels, StepPositions& positions);
     float target_pace() const;
 
     void start(const LineEvent& event);
@@ -121,7 +119,7 @@ private:
     // Ends the pulses that are out. Always false, or what failed.
     Result<bool> rest();
     // False: left on request.
-    bool pass_mark(gpio::LineMask levels);
+    bool pass_mark(gpio::LineMask toggled);
     Diagnostic too_late(std::int64_t late_ns) const;
 
     gpio::GpioChip& chip_;

@@ -57,7 +57,7 @@ void ShapedPlan::append(const motion::PlannedMove& move) {
     if (presses) pressed_mm_ += advance_mm;
 }
 
-void ShapedPlan::forget_pieces_before(std::int64_t time_ns) {
+void ShapedPlan::forget_before(std::int64_t time_ns) {
     while (pieces_.size() > 1 && pieces_[1].move.start_ns < time_ns - reach_ns_)
         pieces_.pop_front();
     kept_until_ns_ = pieces_.size() > 1 ? pieces_[1].move.start_ns + reach_ns_ : time_ns;

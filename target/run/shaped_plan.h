@@ -20,9 +20,9 @@ public:
 
     void append(const motion::PlannedMove& move);
     // Nothing before this time of the steps is asked for any more.
-    void forget_before(std::int64_t time_ns) {
-        if (time_ns > kept_until_ns_) forget_pieces_before(time_ns);
-    }
+    void forget_before(std::int64_t time_ns);
+    // No piece can be forgotten before.
+    std::int64_t kept_until_ns() const { return kept_until_ns_; }
 
     bool empty() const { return pieces_.empty(); }
     // At a time of the steps, which lags behind the plan's by lead_ns().
@@ -50,7 +50,6 @@ private:
     // Of a motor that all axes move in some other way than as a sum.
     double mixed_steps(std::size_t motor, std::int64_t plan_ns);
     double carried_mm(std::size_t motor, const motion::Point& at) const;
-    void forget_pieces_before(std::int64_t time_ns);
 
     motion::Kinematics machine_;
     std::shared_ptr<const motion::BedMesh> bed_;
@@ -61,7 +60,7 @@ private:
     std::array<AxisValues, 4> shares_{};  // otherwise: of the axes, in each motor
     std::array<MotorSeries, 4> series_;
     std::int64_t lead_ns_ = 0, reach_ns_ = 0;
-    std::int64_t kept_until_ns_ = 0;  // of the steps: no piece can be forgotten before
+    std::int64_t kept_until_ns_ = 0;  // of the steps
     PlanPieces pieces_;
     double fed_mm_ = 0, fed_error_mm_ = 0, pressed_mm_ = 0;
 };

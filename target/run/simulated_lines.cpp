@@ -4,14 +4,15 @@
 
 namespace lyr::run {
 
-inline void SimulatedLines::decode(const gpio::LineWrite& write) {
+[[gnu::always_inline]] inline void SimulatedLines::decode(const gpio::LineWrite& write) {
     if (executor_ && executor_->on_trip()) return;
     const std::int64_t behind_ns = executor_ ? executor_->behind_ns() : 0;
     decoder_.write(write.time_ns - behind_ns, write.levels,
                    [this](const DecodedStep& step) { checks_.step(step); });
 }
 
-inline void SimulatedLines::Decoded::operator()(const gpio::LineWrite& write) const {
+[[gnu::always_inline]] inline void SimulatedLines::Decoded::operator()(
+    const gpio::LineWrite& write) const {
     lines->decode(write);
 }
 

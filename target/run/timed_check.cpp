@@ -27,17 +27,25 @@ void TimedCheck::expect(std::span<const motion::PlannedMove> moves, std::span<co
                 std::llround(move.profile.duration_s * ns_per_s * look / looks_per_move));
     }
     shifts_.append(shifts);
+    next_tend_ns_ = 0;
 }
 
 void TimedCheck::step(const DecodedStep& step) {
     const std::int64_t planned_ns = shifts_.asked_ns(step.time_ns);
-    look_until(planned_ns, step.before);
+    if (planned_ns > next_tend_ns_) tend(planned_ns, step.before);
     const double planned_steps = planned(step.axis, planned_ns);
-    measure(step.axis, planned_steps, at_steps_[step.axis]);
-    const std::int64_t after = step.before[step.axis] + (step.positive ? 1 : -1);
-    at_steps_[step.axis] = carried_steps(step.axis, after);
-    measure(step.axis, planned_steps, at_steps_[step.axis]);
-    plan_.forget_before(planned_ns);
+    const double before = at_steps_[step.axis];
+    const double after =
+        carried_steps(step.axis, step.before[step.axis] + (step.positive ? 1 : -1));
+    measure(step.axis, std::max(std::abs(planned_steps - before), std::abs(planned_steps - after)));
+    at_steps_[step.axis] = after;
+}
+
+void TimedCheck::tend(std::int64_t time_ns, const StepPositions& positions) {
+    look_until(time_ns, positions);
+    plan_.forget_before(time_ns);
+    next_tend_ns_ = plan_.kept_until_ns();
+    if (!looks_ns_.empty()) next_tend_ns_ = std::min(next_tend_ns_, looks_ns_.front());
 }
 
 void TimedCheck::finish(const StepPositions& positions) {
@@ -49,8 +57,8 @@ void TimedCheck::finish(const StepPositions& positions) {
 void TimedCheck::look_until(std::int64_t time_ns, const StepPositions& positions) {
     for (; !looks_ns_.empty() && looks_ns_.front() < time_ns; looks_ns_.pop_front())
         for (std::size_t motor = 0; motor < positions.size(); ++motor)
-            measure(motor, planned(motor, looks_ns_.front()),
-                    carried_steps(motor, positions[motor]));
+            measure(motor, std::abs(planned(motor, looks_ns_.front()) -
+                                    carried_steps(motor, positions[motor])));
 }
 
 // A rising motor pushes the axis `play` behind it, a falling one pulls it along.
@@ -63,8 +71,8 @@ double TimedCheck::planned(std::size_t motor, std::int64_t time_ns) {
     return plan_.empty() ? infinity : plan_.motor_steps(motor, time_ns);
 }
 
-void TimedCheck::measure(std::size_t motor, double planned_steps, double carried_steps) {
-    off_plan_[motor] = std::max(off_plan_[motor], shown(std::abs(planned_steps - carried_steps)));
+void TimedCheck::measure(std::size_t motor, double off_steps) {
+    off_plan_[motor] = std::max(off_plan_[motor], shown(off_steps));
 }
 
 }  // namespace lyr::run

@@ -29,15 +29,18 @@ public:
     const AxisValues& off_plan() const { return off_plan_; }
 
 private:
+    // Looks that are due by then, and what is not needed any more from then on.
+    void tend(std::int64_t time_ns, const StepPositions& positions);
     void look_until(std::int64_t time_ns, const StepPositions& positions);
     // Where the play lets the axis be when the motor is at a position.
     double carried_steps(std::size_t motor, std::int64_t position) const;
     double planned(std::size_t motor, std::int64_t time_ns);
-    void measure(std::size_t motor, double planned_steps, double carried_steps);
+    void measure(std::size_t motor, double off_steps);
 
     ShapedPlan plan_;
     AxisValues play_steps_{}, at_steps_{};  // of the axes; after the last step of each
     std::deque<std::int64_t> looks_ns_;
+    std::int64_t next_tend_ns_ = 0;
     ShiftLog shifts_;
     AxisValues off_plan_{};
 };
