@@ -53,15 +53,15 @@ function(lyr_compile_together target)
   endif()
 endfunction()
 
-# lyr_room(<library> [SMALL] [BARE] SOURCES <file>... [FAST <file>...] [ALONE <file>...] [LINK <library>...] [PRIVATE <library>...])
+# lyr_room(<library> [SMALL] [BARE] SOURCES <file>... [FAST <file>...] [PURE <file>...] [ALONE <file>...] [LINK <library>...] [PRIVATE <library>...])
 # Headers are included by their path from the root ("kernel/brep/model.h"); each room publishes only
 # its own folder, through a link in the build tree. SMALL rooms are what a board's program does now and then (options,
 # settings, reports): they are built for size, but for those of their sources that are FAST, which need no room between
-# their functions and jumps to be so: that would be a twentieth of them. BARE rooms, and FAST sources, hold nothing but
+# their functions and jumps to be so: that would be a twentieth of them. BARE rooms, and FAST and PURE sources, hold nothing but
 # memory: nothing of this project throws, and when there is no memory the program ends with its message and cleans up no
 # more of it on the way; the code for that would be a tenth of them.
 function(lyr_room name)
-  cmake_parse_arguments(ROOM "SMALL;BARE" "" "SOURCES;FAST;ALONE;LINK;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ROOM "SMALL;BARE" "" "SOURCES;FAST;PURE;ALONE;LINK;PRIVATE" ${ARGN})
   file(RELATIVE_PATH path ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
   set(published ${PROJECT_BINARY_DIR}/rooms/${name})
   get_filename_component(parent ${published}/${path} DIRECTORY)
@@ -74,10 +74,13 @@ function(lyr_room name)
     if(ROOM_SMALL)
       target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-Os>)
       set_property(SOURCE ${ROOM_FAST} APPEND PROPERTY COMPILE_OPTIONS
-        $<$<CONFIG:Release>:-O2;-fno-align-jumps;-fno-align-functions;-fno-exceptions;-funwind-tables>)
+        $<$<CONFIG:Release>:-O2;-fno-align-jumps;-fno-align-functions>)
     endif()
+    set(bare $<$<CONFIG:Release>:-fno-exceptions;-funwind-tables>)
     if(ROOM_BARE)
-      target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-fno-exceptions;-funwind-tables>)
+      target_compile_options(${name} PRIVATE ${bare})
+    else()
+      set_property(SOURCE ${ROOM_FAST} ${ROOM_PURE} APPEND PROPERTY COMPILE_OPTIONS ${bare})
     endif()
     lyr_compile_together(${name} ${ROOM_ALONE})
     lyr_use_headers(${name})
