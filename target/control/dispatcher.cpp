@@ -2,6 +2,7 @@
 
 #include "target/control/dispatcher.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -86,17 +87,19 @@ std::string Dispatcher::carry_out(const std::string& id, const Commands& command
 }
 
 std::optional<Refusal> Dispatcher::objection(const Commands& commands) const {
-    const PrintState state = print_.status().state;
+    const run::PrintStatus status = print_.status();
     for (const run::Command& command : commands) {
-        if (auto refusal = objection(command, state)) return refusal;
+        if (auto refusal = objection(command, status)) return refusal;
         if (const auto why = run::objection(command, printer_))
             return Refusal{"null", ErrorCode::bad_value, *why};
     }
     return std::nullopt;
 }
 
-std::optional<Refusal> Dispatcher::objection(const run::Command& command, PrintState state) const {
+std::optional<Refusal> Dispatcher::objection(const run::Command& command,
+                                             const run::PrintStatus& status) const {
     using Objection = std::optional<Refusal>;
+    const PrintState state = status.state;
     const Overloaded check{
         // Of two people who see fire, the second must not be told off.
         [](const run::EmergencyStop&) { return Objection(); },
@@ -104,8 +107,12 @@ std::optional<Refusal> Dispatcher::objection(const run::Command& command, PrintS
             return is_ending(state) || is_at_rest(state) ? wrong_state("cannot pause", state)
                                                          : Objection();
         },
-        [&](const run::Resume&) {
-            return is_at_rest(state) ? Objection() : wrong_state("cannot resume", state);
+        [&](const run::Resume&) -> Objection {
+            if (!is_at_rest(state)) return wrong_state("cannot resume", state);
+            if (status.draws_out)
+                return Refusal{"null", ErrorCode::wrong_state,
+                               "cannot resume: the filament is still being drawn out"};
+            return std::nullopt;
         },
         [&](const run::ChangeFilament&) {
             return is_ending(state) ? wrong_state("cannot change filament", state) : Objection();
@@ -116,7 +123,7 @@ std::optional<Refusal> Dispatcher::objection(const run::Command& command, PrintS
         [&](const run::SetTemperature& set) -> Objection {
             if (is_ending(state)) return wrong_state("cannot set temperatures", state);
             const auto& heater = printer_.heaters[set.heater];
-            if (!heater || !print_.status().heaters[set.heater].is_present)
+            if (!heater || !status.heaters[set.heater].is_present)
                 return Refusal{
                     "null", ErrorCode::no_such_heater,
                     "this print has no heater " + std::string(config::heater_names[set.heater])};
@@ -125,6 +132,14 @@ std::optional<Refusal> Dispatcher::objection(const run::Command& command, PrintS
                 return Refusal{"null", ErrorCode::wrong_state,
                                "filament is pushed from " + shortest(heater->min_extrude_c) +
                                    " °C on; pause first"};
+            return std::nullopt;
+        },
+        [&](const run::SetFan&) -> Objection {
+            if (is_ending(state)) return wrong_state("cannot set the fan", state);
+            // Whoever tends the heaters switches the fan.
+            if (std::ranges::none_of(status.heaters, &run::HeaterNow::is_present))
+                return Refusal{"null", ErrorCode::bad_value,
+                               "this print switches no fan: it runs without heat"};
             return std::nullopt;
         },
         [&](const auto&) {

@@ -42,7 +42,8 @@ public:
 
 private:
     std::optional<Refusal> objection(const Commands& commands) const;
-    std::optional<Refusal> objection(const run::Command& command, run::PrintState state) const;
+    std::optional<Refusal> objection(const run::Command& command,
+                                     const run::PrintStatus& status) const;
     std::string carry_out(const std::string& id, const Commands& commands);
 
     run::PrintControl& print_;

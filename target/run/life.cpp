@@ -213,13 +213,11 @@ void Life::rest_here() {
 }
 
 void Life::resume() {
-    const bool comes_to_rest =
-        phase_ == Phase::braking || phase_ == Phase::parking || phase_ == Phase::unloading;
-    if ((comes_to_rest || rests_again_) && !cancels() && !has_finished_) {
-        if (comes_to_rest && changes_filament())
+    if ((comes_to_rest() || rests_again_) && !cancels() && !has_finished_) {
+        if (comes_to_rest() && changes_filament())
             return refuse(Resume{}, "the filament is still being drawn out");
         // Both take their turn where the head is on its way.
-        goes_on_ = comes_to_rest;
+        goes_on_ = comes_to_rest();
         rests_again_ = false;
         return;
     }
@@ -378,6 +376,8 @@ void Life::park() {
 }
 
 void Life::parked() {
+    if (phase_ == Phase::unloading)
+        message_ = "the filament is drawn out: put the new one in, then resume";
     rest_here();
     if (changes_filament() && !is_unloaded_) unload();
     if (has_finished_) {

@@ -162,6 +162,9 @@ private:
     bool keeps_warm() const;
     bool changes_filament() const { return std::holds_alternative<ChangeFilament>(reason_); }
     bool cancels() const { return std::holds_alternative<Cancel>(reason_); }
+    bool comes_to_rest() const {
+        return phase_ == Phase::braking || phase_ == Phase::parking || phase_ == Phase::unloading;
+    }
     float pace() const;
     void refuse(const Command& command, const std::string& why);
     PrintState state() const;

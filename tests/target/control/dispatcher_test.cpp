@@ -94,6 +94,24 @@ TEST_CASE("dispatcher 2: what cannot be done is refused and nothing of it is don
     CHECK(Scene(PrintState::paused).code(R"({"command":"set","tool_c":0})") == "ok");
 }
 
+TEST_CASE("dispatcher 2: a print without heat switches no fan") {
+    Scene scene;
+    run::PrintStatus status = scene.print.status();
+    for (run::HeaterNow& heater : status.heaters) heater.is_present = false;
+    scene.print.publish(status);
+    CHECK(scene.code(R"({"command":"set","fan":0.5})") == "bad_value");
+    CHECK(scene.code(R"({"command":"set","speed":1.5})") == "ok");
+}
+
+TEST_CASE("dispatcher 2: no resume while filament is drawn out") {
+    Scene scene(PrintState::pausing);
+    run::PrintStatus status = scene.print.status();
+    status.draws_out = true;
+    scene.print.publish(status);
+    CHECK(scene.code(R"({"command":"resume"})") == "wrong_state");
+    CHECK(scene.code(R"({"command":"change_filament"})") == "ok");
+}
+
 TEST_CASE("dispatcher 2: which command in which state") {
     const std::vector<std::pair<const char*, const char*>> allowed{
         // heating, printing, pausing, paused, resuming, stopping, done, failed, stopped
