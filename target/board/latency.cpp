@@ -124,6 +124,17 @@ std::string row(const char* what, const Spread& spread) {
                      static_cast<double>(spread.worst_ns) / ns_per_us);
 }
 
+std::optional<Diagnostic> warning_of(std::int64_t worst_ns, std::int64_t limit_ns) {
+    if (worst_ns <= limit_ns) return std::nullopt;
+    return Diagnostic{
+        Severity::warning,
+        ExitStatus::machine,
+        formatted("a wait ended %.3f ms late, and pulse.late_limit_ms is %.3f: a print would have "
+                  "stopped there; docs/bring-up.md says what makes a board punctual",
+                  static_cast<double>(worst_ns) / 1e6, static_cast<double>(limit_ns) / 1e6),
+        {}};
+}
+
 }  // namespace
 
 Spread spread_of(std::vector<std::int64_t>& times_ns) {
@@ -148,6 +159,9 @@ Result<LatencyReport> measure_latency(const LatencyJob& job, gpio::Clock& clock,
     measured.timing.late_ns = std::max(report.asleep.rare_ns, report.awake.rare_ns);
     if (report.write) measured.timing.write_ns = report.write->rare_ns;
     report.steps_per_s = config::held_steps_per_s(measured);
+    if (const auto warning = warning_of(std::max(report.asleep.worst_ns, report.awake.worst_ns),
+                                        job.printer.pulse.late_limit_ns))
+        report.warnings.push_back(*warning);
     return report;
 }
 
@@ -170,7 +184,7 @@ Result<LatencyReport> measure_latency(const LatencyJob& job) {
         run::take_precedence(job.printer.timing.cpu, warnings);
         report = measure_latency(job, clock, chip.get());
     }).join();
-    if (report) report->warnings = std::move(warnings);
+    if (report) report->warnings.insert(report->warnings.begin(), warnings.begin(), warnings.end());
     return report;
 }
 

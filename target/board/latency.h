@@ -9,7 +9,8 @@
 //  1. Every wait is counted; the lateness that is `rare` is exceeded by one wait in 10,000 and `worst` by none.
 //  2. Lines are written only if there is a chip: every one of its lines its inactive level, which it has.
 //  3. printer.toml's keys timing.late_us and timing.write_us are the rare ones, of both kinds of wait the later.
-//  4. text_of() is TOML: two keys, and comments.
+//  4. A wait that ended later than the printer allows a print's edge to come is a warning.
+//  5. text_of() is TOML: two keys, and comments.
 
 #pragma once
 

@@ -77,7 +77,21 @@ TEST_CASE("latency 2: a write that fails ends the measurement") {
     CHECK(report.error().message == "bus error");
 }
 
-TEST_CASE("latency 4: what is told can be put into the printer's file as it is") {
+TEST_CASE("latency 4: a wait that would have ended a print is told") {
+    std::int64_t waits = 0;
+    gpio::VirtualClock clock([&](std::int64_t) { return ++waits == 500 ? 5'000'001 : 3'000; });
+    LatencyJob job = job_of(2);
+    job.printer.pulse.late_limit_ns = 5'000'000;
+    const auto report = measure_latency(job, clock, nullptr);
+    REQUIRE(report.ok());
+    REQUIRE(report->warnings.size() == 1);
+    CHECK(report->warnings[0].message.find("pulse.late_limit_ms is 5.000") != std::string::npos);
+    job.printer.pulse.late_limit_ns = 5'000'001;
+    waits = 0;
+    CHECK(measure_latency(job, clock, nullptr)->warnings.empty());
+}
+
+TEST_CASE("latency 5: what is told can be put into the printer's file as it is") {
     gpio::VirtualClock clock([](std::int64_t) { return 12'300; });
     gpio::MockChip chip(8, clock, [&](const gpio::LineWrite&) { clock.advance_ns(4'500); });
     const auto report = measure_latency(job_of(1), clock, &chip);
