@@ -108,6 +108,12 @@ void append_json(std::string& text, const char* key, const std::optional<std::in
         text += formatted(",\"%s\":null", key);
 }
 
+// JSON knows no number for what was infinite, or none.
+void append_distance(std::string& text, const char* key, double distance) {
+    text += formatted(",\"%s\":", key);
+    text += std::isfinite(distance) ? formatted("%.9f", distance) : "null";
+}
+
 void append_json_axes(std::string& text, const SimulationReport& report) {
     text += ",\"axes\":{";
     for (std::size_t i = 0; i < axis_count; ++i) {
@@ -119,8 +125,10 @@ void append_json_axes(std::string& text, const SimulationReport& report) {
                           static_cast<unsigned long long>(pulses.reversals));
         append_json(text, "shortest_interval_ns", pulses.shortest_interval_ns);
         append_json(text, "longest_interval_ns", pulses.longest_interval_ns);
-        text += formatted(",\"max_rate_hz\":%.3f,\"off_file_steps\":%.9f,\"off_plan_steps\":%.9f}",
-                          rate_hz(pulses), report.path.steps[i], report.planned_steps[i]);
+        text += formatted(",\"max_rate_hz\":%.3f", rate_hz(pulses));
+        append_distance(text, "off_file_steps", report.path.steps[i]);
+        append_distance(text, "off_plan_steps", report.planned_steps[i]);
+        text += '}';
     }
     text += '}';
 }
@@ -214,9 +222,9 @@ std::string json_of(const SimulationReport& report) {
     text += '}';
     text += formatted(",\"extruded_mm\":%.6f,\"travelled_mm\":%.6f,\"filament_mm\":%.6f",
                       totals.extruded_mm, totals.travelled_mm, totals.filament_mm);
-    text += formatted(",\"deviation_steps\":%.9f,\"deviation_mm\":%.9f,\"within_half_step\":%s",
-                      report.worst_steps(), report.path.distance_mm,
-                      report.within_limits() ? "true" : "false");
+    append_distance(text, "deviation_steps", report.worst_steps());
+    append_distance(text, "deviation_mm", report.path.distance_mm);
+    text += std::string(",\"within_half_step\":") + (report.within_limits() ? "true" : "false");
     text += ",\"pulses\":{\"writes\":" + std::to_string(report.writes);
     for (const Spacing& spacing : spacings)
         append_json(text, spacing.json_key, shortest(report, spacing.figure));

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <limits>
 
 #include "target/gpio/wave_file.h"
 #include "target/run/print_files.h"
@@ -220,6 +221,16 @@ TEST_CASE(
     CHECK(json.find("tool 0 to 230") != std::string::npos);
     CHECK(json.find("fans") != std::string::npos);
     CHECK(json.find("pauses") != std::string::npos);
+}
+
+TEST_CASE("simulate: a distance that is infinite is null in JSON, which has no number for it") {
+    SimulationReport report =
+        report_of(write_print("null", {draw_square}), config::generic_printer());
+    report.planned_steps[1] = report.path.distance_mm = std::numeric_limits<double>::infinity();
+    const std::string json = json_of(report);
+    CHECK(json.find("inf") == std::string::npos);
+    CHECK(json.find("\"deviation_mm\":null,\"within_half_step\":false") != std::string::npos);
+    CHECK(json.find("\"off_plan_steps\":null}") != std::string::npos);
 }
 
 TEST_CASE(
