@@ -57,7 +57,7 @@ endfunction()
 # Headers are included by their path from the root ("kernel/brep/model.h"); each room publishes only
 # its own folder, through a link in the build tree. SMALL rooms are what a board's program does now and then (options,
 # settings, reports): they are built for size, but for those of their sources that are FAST, which need no room between
-# their functions and jumps to be so: that would be a twentieth of them. BARE rooms, and FAST and PURE sources, hold nothing but
+# their functions and jumps to be so: that would be a twentieth of them. BARE rooms, and PURE sources of others, hold nothing but
 # memory: nothing of this project throws, and when there is no memory the program ends with its message and cleans up no
 # more of it on the way; the code for that would be a tenth of them.
 function(lyr_room name)
@@ -80,7 +80,7 @@ function(lyr_room name)
     if(ROOM_BARE)
       target_compile_options(${name} PRIVATE ${bare})
     else()
-      set_property(SOURCE ${ROOM_FAST} ${ROOM_PURE} APPEND PROPERTY COMPILE_OPTIONS ${bare})
+      set_property(SOURCE ${ROOM_PURE} APPEND PROPERTY COMPILE_OPTIONS ${bare})
     endif()
     lyr_compile_together(${name} ${ROOM_ALONE})
     lyr_use_headers(${name})

@@ -33,8 +33,8 @@ public:
     using Fault = std::function<std::optional<Diagnostic>(std::uint64_t number)>;
 
     explicit LineFaults(Fault fault) : fault_(std::move(fault)) {}
-    // False: next() need not be asked.
     bool may_fail() const { return released_ || fault_; }
+    // Of the next write, which may.
     Status next();
     // From now on all writes fail; the last one makes every line inactive.
     Status release(GpioChip& lines);

@@ -28,12 +28,12 @@ Result<bool> EventStream::next(std::vector<LineEvent>& events) {
     batch_.clear();
     const Result<bool> more = next(batch_);
     if (!more) return more.error();
-    schedule(batch_, *more ? std::nullopt : std::optional(steps_.time_ns()), events);
+    append(batch_, *more ? std::nullopt : std::optional(steps_.time_ns()), events);
     return *more;
 }
 
-void EventStream::schedule(std::span<const Step> steps, std::optional<std::int64_t> end_ns,
-                           std::vector<LineEvent>& events) {
+void EventStream::append(std::span<const Step> steps, std::optional<std::int64_t> end_ns,
+                         std::vector<LineEvent>& events) {
     if (!begun_) schedule_.begin(driver_wake_ns, events);
     begun_ = true;
     schedule_.append(steps, events);

@@ -34,8 +34,8 @@ public:
     // The halves of that, which share nothing: the next steps, and the events that they become; the last ones with the time
     // at which they end.
     Result<bool> next(std::vector<Step>& steps) { return steps_.next(steps); }
-    void schedule(std::span<const Step> steps, std::optional<std::int64_t> end_ns,
-                  std::vector<LineEvent>& events);
+    void append(std::span<const Step> steps, std::optional<std::int64_t> end_ns,
+                std::vector<LineEvent>& events);
 
     void heed_speed(const std::atomic<float>& factor) { steps_.heed_speed(factor); }
     void begin_drawn_back(double mm) { steps_.begin_drawn_back(mm); }

@@ -1,5 +1,4 @@
-// Times are kept as gaps from the write before, so that the lateness of a step adds to everything that follows by
-// itself and nothing ever has to be caught up.
+// Of what it is made, and its loop for whatever chip and clock there are.
 
 #include "target/run/executor.h"
 

@@ -19,7 +19,7 @@
 //  7. At a mark the count of those reached is stored; at a gate no further event is written until as many orders are
 //     done. The time spent there counts as neither time of events nor lateness. Without `marks` both are passed by.
 //  8. Nothing is allocated, locked or logged, and no call is made but wait and write. Those calls are virtual; after
-//     bind() they are the types' own, which may take less time than a call.
+//     bind() those of each event are the types' own, which may take less time than a call.
 //  9. Time runs at the pace that is wanted, a share of the planned one, and follows a new one as evenly as in
 //     braking. A wanted pace of 0 brings the head to rest as 5 does; after go_on() the events from taken() on follow, and
 //     the head gains speed as it lost it. No event is left out or doubled by that; the end of a pulse that was ended

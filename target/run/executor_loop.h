@@ -1,4 +1,5 @@
-// What Executor does for each event, for whoever binds it to a chip and a clock.
+// What Executor does for each event, for whoever binds it to a chip and a clock. Times are kept as gaps from the write
+// before, so that the lateness of a step adds to everything that follows by itself and nothing ever has to be caught up.
 
 #pragma once
 

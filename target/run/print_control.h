@@ -47,7 +47,7 @@ constexpr bool is_over(PrintState state) {
 
 struct PrintStatus {
     PrintState state = PrintState::heating;
-    std::string message;  // why it is in this state, where that is not plain; one line
+    std::string message;     // why it is in this state, where that is not plain; one line
     bool draws_out = false;  // filament, or is about to: it cannot go on before that is done
     std::string file;
     std::uint32_t layer = 0, layers = 0;  // from 1; 0: before the first

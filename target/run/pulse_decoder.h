@@ -44,7 +44,7 @@ struct PulseFigures {
 
 class PulseDecoder {
 public:
-    // All lines have these levels from now on. `observe` is called with each DecodedStep.
+    // All lines have these levels from now on; times ascend. `observe` is called with each DecodedStep.
     template <class Observer>
     void write(std::int64_t time_ns, gpio::LineMask levels, const Observer& observe);
     void write(const gpio::LineWrite& line_write) {

@@ -3,8 +3,8 @@
 // it shares no code with the generators but the taps, the paths and the speed profile's numbers.
 //
 // Contract
-//  1. motor_steps() is exact to rounding for times from the first move that is kept to the end of the last,
-//     less the reach of the taps.
+//  1. motor_steps() holds for times from the first move that is kept to the end of the last, less the reach of the taps;
+//     it is exact to rounding, but for turns, which are within series_mm for each copy of the motion.
 
 #pragma once
 
@@ -55,10 +55,10 @@ private:
     std::shared_ptr<const motion::BedMesh> bed_;
     std::vector<PlanSum> axes_;
     AxisValues steps_per_mm_{};
-    AxisValues origin_mm_{};              // of the motors
-    bool mixes_all_ = false;              // a delta's carriages, a bed's mesh
-    std::array<AxisValues, 4> shares_{};  // otherwise: of the axes, in each motor
-    std::array<MotorSeries, 4> series_;
+    AxisValues origin_mm_{};                                // of the motors
+    bool mixes_all_ = false;                                // a delta's carriages, a bed's mesh
+    std::array<AxisValues, motion::motor_count> shares_{};  // otherwise: of the axes, in each motor
+    std::array<MotorSeries, motion::motor_count> series_;
     std::int64_t lead_ns_ = 0, reach_ns_ = 0;
     std::int64_t kept_until_ns_ = 0;  // of the steps
     PlanPieces pieces_;

@@ -39,8 +39,8 @@ const Portion& StreamBeside::next() {
     portion_.more = batch.more;
     const bool is_last = batch.more && !*batch.more;
     if (batch.more)
-        stream_.schedule(batch.steps, is_last ? std::optional(batch.end_ns) : std::nullopt,
-                         portion_.events);
+        stream_.append(batch.steps, is_last ? std::optional(batch.end_ns) : std::nullopt,
+                       portion_.events);
     portion_.moves.swap(batch.moves);
     portion_.begun.swap(batch.begun);
     portion_.shifts = stream_.schedule().take_shifts();
@@ -73,7 +73,7 @@ void StreamBeside::make(Group& group) {
         Batch& batch = group.batches[group.count++];
         make(batch);
         if (!batch.more || !*batch.more) return;
-    } while (group.count < portions_in_group &&
+    } while (group.count < batches_in_group &&
              stream_.steps().time_ns() - begin_ns < longest_group_ns_);
 }
 

@@ -3,7 +3,7 @@
 //
 // Contract
 //  1. next() gives what EventStream::next() would: the same events, in portions of the same length.
-//  2. What is made ahead is bounded: at most `ahead` groups, each of some portions, of which the last one begins no later
+//  2. What is made ahead is bounded: at most `ahead` groups, each of some batches of steps, of which the last one begins no later
 //     than longest_group_ns after the first. A speed holds from the group on that is asked for next; so results do not
 //     depend on which thread is quicker.
 //  3. After the last portion, or one with an error, next() must not be called any more. The destructor leaves undone what
@@ -32,7 +32,7 @@ struct Portion {
 
 class StreamBeside {
 public:
-    static constexpr std::size_t portions_in_group = 2, ahead = 2;
+    static constexpr std::size_t batches_in_group = 2, ahead = 2;
 
     // `speed_factor` is read by next() alone.
     StreamBeside(EventStream stream, const std::atomic<float>& speed_factor,
@@ -56,7 +56,7 @@ private:
     struct Group {
         float speed_factor = 1;  // that it is made with
         std::size_t count = 0;   // of its batches
-        std::array<Batch, portions_in_group> batches;
+        std::array<Batch, batches_in_group> batches;
     };
 
     void ask(Group group);

@@ -6,6 +6,8 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <random>
 
 #include "target/run/pulse_decoder.h"
@@ -186,6 +188,31 @@ TEST_CASE("schedule: appended in pieces of any size it gives the same events") {
                      [](const auto& a, const auto& b) {
                          return a.time_ns == b.time_ns && a.levels == b.levels;
                      }));
+}
+
+TEST_CASE(
+    "schedule 4: marks that stand close, while drivers need long, all stay open and come out") {
+    PulseSchedule schedule({100'000, 100'000, 500'000, 100'000, 5'000'000}, 0);
+    constexpr std::uint64_t marks = 3'000;
+    std::vector<LineEvent> events;
+    schedule.begin(1'000'000, events);
+    for (std::uint64_t i = 0; i < marks; ++i) {
+        const auto time_ns = static_cast<std::int64_t>(i);
+        const std::array<Step, 2> steps{
+            {{time_ns, static_cast<std::uint8_t>(i % 4), true}, {time_ns, mark_axis, false}}};
+        schedule.append(std::span(steps).last(i < 8 ? 2 : 1), events);
+    }
+    schedule.finish(0, events);
+    std::uint64_t seen = 0, steps = 0;
+    for (std::size_t i = 1; i < events.size(); ++i) {
+        CHECK(events[i].time_ns > events[i - 1].time_ns);
+        const gpio::LineMask toggled = events[i].levels ^ events[i - 1].levels;
+        seen += (toggled & mark_bit) != 0;
+        steps +=
+            static_cast<std::uint64_t>(std::popcount(toggled & events[i].levels & all_step_bits));
+    }
+    CHECK(seen == marks);
+    CHECK(steps == 8);
 }
 
 TEST_CASE("decoder 3: figures are the extremes of what was written") {

@@ -94,7 +94,7 @@ TEST_CASE("stream beside 1: portions are those of the stream, and bring the same
                 moves += portion.moves.size();
                 layers += portion.begun.size();
             }
-            CHECK(portions > (StreamBeside::ahead + 1) * StreamBeside::portions_in_group);
+            CHECK(portions > (StreamBeside::ahead + 1) * StreamBeside::batches_in_group);
             CHECK(moves > 100);
             CHECK(layers == 16);
         }
