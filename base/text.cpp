@@ -108,6 +108,10 @@ std::string in_json(std::string_view text) {
     return json + '"';
 }
 
+std::string in_json(double value, int decimals) {
+    return std::isfinite(value) ? formatted("%.*f", decimals, value) : "null";
+}
+
 std::string counted(std::uint64_t count, std::string_view noun) {
     return std::to_string(count) + ' ' + std::string(noun) + (count == 1 ? "" : "s");
 }

@@ -18,6 +18,8 @@ std::string in_quotes(std::string_view text);
 
 // A JSON string, quotes and all.
 std::string in_json(std::string_view text);
+// A JSON number of so many decimals; null for what is infinite, or was never measured.
+std::string in_json(double value, int decimals);
 
 // "1 layer", "2 layers", "0 layers": for nouns whose plural takes an s.
 std::string counted(std::uint64_t count, std::string_view noun);

@@ -57,9 +57,9 @@ endfunction()
 # Headers are included by their path from the root ("kernel/brep/model.h"); each room publishes only
 # its own folder, through a link in the build tree. SMALL rooms are what a board's program does now and then (options,
 # settings, reports): they are built for size, but for those of their sources that are FAST, which need no room between
-# their functions and jumps to be so: that would be a twentieth of them. BARE rooms, and PURE sources of others, hold nothing but
-# memory: nothing of this project throws, and when there is no memory the program ends with its message and cleans up no
-# more of it on the way; the code for that would be a tenth of them.
+# their functions and jumps to be so: that would be a twentieth of them. BARE rooms, and PURE sources of others, hold
+# nothing but memory: nothing of this project throws, and when there is no memory the program ends with its message and
+# cleans up no more of it on the way; the code for that would be a tenth of them.
 function(lyr_room name)
   cmake_parse_arguments(ROOM "SMALL;BARE" "" "SOURCES;FAST;PURE;ALONE;LINK;PRIVATE" ${ARGN})
   file(RELATIVE_PATH path ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})

@@ -3,7 +3,6 @@
 #include "target/control/dispatcher.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 
 #include "base/text.h"
@@ -31,11 +30,6 @@ Refusal wrong_state(const char* what, PrintState state) {
     return {"null", ErrorCode::wrong_state,
             std::string(what) + ": the print is " +
                 std::string(run::print_state_names[static_cast<std::size_t>(state)])};
-}
-
-// What was never measured is null.
-std::string number(double value, int digits) {
-    return std::isfinite(value) ? formatted("%.*f", digits, value) : "null";
 }
 
 }  // namespace
@@ -159,12 +153,12 @@ std::string json_of(const run::PrintStatus& status, const config::Printer& print
     const auto& at = status.position_mm;
     text += ",\"position_mm\":";
     text += status.is_position_known
-                ? '[' + number(at[0], 3) + ',' + number(at[1], 3) + ',' + number(at[2], 3) + ']'
+                ? '[' + in_json(at[0], 3) + ',' + in_json(at[1], 3) + ',' + in_json(at[2], 3) + ']'
                 : "null";
-    text += ",\"time_s\":" + number(status.time_s, 2);
-    text += ",\"elapsed_s\":" + number(status.elapsed_s, 2);
+    text += ",\"time_s\":" + in_json(status.time_s, 2);
+    text += ",\"elapsed_s\":" + in_json(status.elapsed_s, 2);
     text += ",\"estimated_s\":";
-    text += status.estimated_s > 0 ? number(status.estimated_s, 2) : "null";
+    text += status.estimated_s > 0 ? in_json(status.estimated_s, 2) : "null";
     text += ",\"heaters\":{";
     bool first = true;
     for (std::size_t i = 0; i < status.heaters.size(); ++i) {
@@ -173,12 +167,12 @@ std::string json_of(const run::PrintStatus& status, const config::Printer& print
         text += first ? "\"" : ",\"";
         first = false;
         text += config::heater_names[i];
-        text += "\":{\"temperature_c\":" + number(heater.temperature_c, 1);
-        text += ",\"target_c\":" + number(heater.target_c, 1) + '}';
+        text += "\":{\"temperature_c\":" + in_json(heater.temperature_c, 1);
+        text += ",\"target_c\":" + in_json(heater.target_c, 1) + '}';
     }
-    text += "},\"fan\":" + number(status.fan, 3);
-    text += ",\"speed\":" + number(status.speed_factor, 3);
-    text += ",\"filament_mm\":" + number(status.filament_mm, 1) + '}';
+    text += "},\"fan\":" + in_json(status.fan, 3);
+    text += ",\"speed\":" + in_json(status.speed_factor, 3);
+    text += ",\"filament_mm\":" + in_json(status.filament_mm, 1) + '}';
     return text;
 }
 

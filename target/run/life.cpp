@@ -214,8 +214,7 @@ void Life::rest_here() {
 
 void Life::resume() {
     if ((comes_to_rest() || rests_again_) && !cancels() && !has_finished_) {
-        if (comes_to_rest() && changes_filament())
-            return refuse(Resume{}, "the filament is still being drawn out");
+        if (draws_out()) return refuse(Resume{}, "the filament is still being drawn out");
         // Both take their turn where the head is on its way.
         goes_on_ = comes_to_rest();
         rests_again_ = false;

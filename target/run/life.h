@@ -165,6 +165,7 @@ private:
     bool comes_to_rest() const {
         return phase_ == Phase::braking || phase_ == Phase::parking || phase_ == Phase::unloading;
     }
+    bool draws_out() const { return comes_to_rest() && changes_filament(); }
     float pace() const;
     void refuse(const Command& command, const std::string& why);
     PrintState state() const;

@@ -127,7 +127,7 @@ void Life::publish(PrintState state, bool is_position_known) {
     PrintStatus status;
     status.state = state;
     status.message = message_;
-    status.draws_out = comes_to_rest() && changes_filament();
+    status.draws_out = draws_out();
     status.file = print_.file;
     status.layer = layer_;
     status.layers = print_.layers;

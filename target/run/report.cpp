@@ -108,12 +108,6 @@ void append_json(std::string& text, const char* key, const std::optional<std::in
         text += formatted(",\"%s\":null", key);
 }
 
-// JSON knows no number for what was infinite, or none.
-void append_distance(std::string& text, const char* key, double distance) {
-    text += formatted(",\"%s\":", key);
-    text += std::isfinite(distance) ? formatted("%.9f", distance) : "null";
-}
-
 void append_json_axes(std::string& text, const SimulationReport& report) {
     text += ",\"axes\":{";
     for (std::size_t i = 0; i < axis_count; ++i) {
@@ -126,9 +120,8 @@ void append_json_axes(std::string& text, const SimulationReport& report) {
         append_json(text, "shortest_interval_ns", pulses.shortest_interval_ns);
         append_json(text, "longest_interval_ns", pulses.longest_interval_ns);
         text += formatted(",\"max_rate_hz\":%.3f", rate_hz(pulses));
-        append_distance(text, "off_file_steps", report.path.steps[i]);
-        append_distance(text, "off_plan_steps", report.planned_steps[i]);
-        text += '}';
+        text += ",\"off_file_steps\":" + in_json(report.path.steps[i], 9);
+        text += ",\"off_plan_steps\":" + in_json(report.planned_steps[i], 9) + '}';
     }
     text += '}';
 }
@@ -222,8 +215,8 @@ std::string json_of(const SimulationReport& report) {
     text += '}';
     text += formatted(",\"extruded_mm\":%.6f,\"travelled_mm\":%.6f,\"filament_mm\":%.6f",
                       totals.extruded_mm, totals.travelled_mm, totals.filament_mm);
-    append_distance(text, "deviation_steps", report.worst_steps());
-    append_distance(text, "deviation_mm", report.path.distance_mm);
+    text += ",\"deviation_steps\":" + in_json(report.worst_steps(), 9);
+    text += ",\"deviation_mm\":" + in_json(report.path.distance_mm, 9);
     text += std::string(",\"within_half_step\":") + (report.within_limits() ? "true" : "false");
     text += ",\"pulses\":{\"writes\":" + std::to_string(report.writes);
     for (const Spacing& spacing : spacings)

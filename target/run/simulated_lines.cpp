@@ -4,16 +4,13 @@
 
 namespace lyr::run {
 
-[[gnu::always_inline]] inline void SimulatedLines::decode(const gpio::LineWrite& write) {
-    if (executor_ && executor_->on_trip()) return;
-    const std::int64_t behind_ns = executor_ ? executor_->behind_ns() : 0;
-    decoder_.write(write.time_ns - behind_ns, write.levels,
-                   [this](const DecodedStep& step) { checks_.step(step); });
-}
-
 [[gnu::always_inline]] inline void SimulatedLines::Decoded::operator()(
     const gpio::LineWrite& write) const {
-    lines->decode(write);
+    const Executor* executor = lines->executor_;
+    if (executor && executor->on_trip()) return;
+    const std::int64_t behind_ns = executor ? executor->behind_ns() : 0;
+    lines->decoder_.write(write.time_ns - behind_ns, write.levels,
+                          [this](const DecodedStep& step) { lines->checks_.step(step); });
 }
 
 SimulatedLines::SimulatedLines(std::size_t line_count, const SimulatedClock& clock,

@@ -35,8 +35,6 @@ private:
         void operator()(const gpio::LineWrite& write) const;
     };
 
-    void decode(const gpio::LineWrite& write);
-
     ChecksBeside& checks_;
     PulseDecoder decoder_;
     const Executor* executor_ = nullptr;

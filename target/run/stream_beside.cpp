@@ -18,6 +18,7 @@ StreamBeside::StreamBeside(EventStream stream, const std::atomic<float>& speed_f
       wanted_factor_(speed_factor),
       longest_group_ns_(longest_group_ns) {
     stream_.heed_speed(factor_);
+    portion_.events.reserve(usual_events);
     for (std::size_t i = 0; i < ahead; ++i) ask({});
     thread_ = std::thread([this] { work(); });
 }
@@ -35,7 +36,6 @@ const Portion& StreamBeside::next() {
     }
     Batch& batch = group_.batches[given_++];
     portion_.events.clear();
-    portion_.events.reserve(usual_events);
     portion_.more = batch.more;
     const bool is_last = batch.more && !*batch.more;
     if (batch.more)

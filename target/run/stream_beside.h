@@ -3,9 +3,9 @@
 //
 // Contract
 //  1. next() gives what EventStream::next() would: the same events, in portions of the same length.
-//  2. What is made ahead is bounded: at most `ahead` groups, each of some batches of steps, of which the last one begins no later
-//     than longest_group_ns after the first. A speed holds from the group on that is asked for next; so results do not
-//     depend on which thread is quicker.
+//  2. What is made ahead is bounded: at most `ahead` groups, each of some batches of steps, of which the last one begins
+//     no later than longest_group_ns after the first. A speed holds from the group on that is asked for next; so results
+//     do not depend on which thread is quicker.
 //  3. After the last portion, or one with an error, next() must not be called any more. The destructor leaves undone what
 //     nobody took.
 

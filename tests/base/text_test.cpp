@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <random>
 
 using namespace lyr;
@@ -76,4 +77,11 @@ TEST_CASE("text: the shortest form reads back as the same number") {
             std::ldexp(static_cast<double>(random()), static_cast<int>(random() % 200) - 100);
         CHECK(std::strtod(shortest(value).c_str(), nullptr) == value);
     }
+}
+
+TEST_CASE("text: a number that JSON does not know is null") {
+    CHECK(in_json(1.25, 1) == "1.2");
+    CHECK(in_json(-0.5, 3) == "-0.500");
+    CHECK(in_json(std::numeric_limits<double>::infinity(), 3) == "null");
+    CHECK(in_json(std::numeric_limits<double>::quiet_NaN(), 3) == "null");
 }

@@ -1,7 +1,6 @@
 #include "target/control/web/history.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "base/text.h"
@@ -35,7 +34,7 @@ std::string History::since(std::uint64_t number) const {
         const Sample& sample = ring_[i % most_samples];
         text += formatted(i == from ? "[%.0f" : ",[%.0f", static_cast<double>(sample.time_s));
         for (const float value : sample.values_c)
-            text += std::isfinite(value) ? formatted(",%.1f", static_cast<double>(value)) : ",null";
+            text += ',' + in_json(static_cast<double>(value), 1);
         text += ']';
     }
     return text + "]}";
