@@ -20,6 +20,8 @@
 #include <thread>
 #include <vector>
 
+#include "scratch.h"
+
 namespace lyr::tests {
 
 namespace fs = std::filesystem;
@@ -36,10 +38,7 @@ inline std::string text_of(const fs::path& path) {
 
 class Folder {
 public:
-    explicit Folder(const std::string& name) : path_(fs::path(LYR_BUILD) / "test-apps" / name) {
-        fs::remove_all(path_);
-        fs::create_directories(path_);
-    }
+    explicit Folder(const std::string& name) : path_(scratch_folder(name)) {}
 
     fs::path operator/(const std::string& name) const { return path_ / name; }
     void write(const std::string& name, const std::string& text) const {

@@ -9,14 +9,14 @@
 #include <fstream>
 #include <vector>
 
-#include "base/fresh_folder.h"
+#include "scratch.h"
 
 using namespace lyr;
-using lyr::tests::fresh_folder;
+using lyr::tests::scratch_folder;
 namespace fs = std::filesystem;
 
 TEST_CASE("same file: one file by all its names, there or not") {
-    const fs::path folder = fresh_folder("names");
+    const fs::path folder = scratch_folder("names");
     fs::create_directories(folder / "sub");
     fs::create_directory_symlink("sub", folder / "other");
     fs::create_symlink("sub/file", folder / "link");
@@ -43,7 +43,7 @@ TEST_CASE("same file: one file by all its names, there or not") {
 }
 
 TEST_CASE("same file: nothing meets in /dev/null, and circles of links are no file") {
-    const fs::path folder = fresh_folder("none");
+    const fs::path folder = scratch_folder("none");
     fs::create_symlink("/dev/null", folder / "null");
     CHECK_FALSE(same_file("/dev/null", "/dev/null"));
     CHECK_FALSE(same_file("/dev/null", folder / "null"));
@@ -54,7 +54,7 @@ TEST_CASE("same file: nothing meets in /dev/null, and circles of links are no fi
 }
 
 TEST_CASE("place: names of open descriptors are known, through links too") {
-    const fs::path folder = fresh_folder("descriptors");
+    const fs::path folder = scratch_folder("descriptors");
     fs::create_symlink("/dev/stdout", folder / "link");
     for (const fs::path& name : {fs::path("/dev/stdout"), fs::path("/dev/fd/1"),
                                  fs::path("/proc/self/fd/1"), folder / "link"}) {
@@ -72,13 +72,13 @@ TEST_CASE("place: names of open descriptors are known, through links too") {
 }
 
 TEST_CASE("place: a folder that is missing leaves the name as it is") {
-    const fs::path folder = fresh_folder("missing");
+    const fs::path folder = scratch_folder("missing");
     CHECK(place_of(folder / "no" / "file")->path == (folder / "no" / "file").string());
     CHECK(place_of("file")->path == fs::current_path() / "file");
 }
 
 TEST_CASE("place: kinds of files") {
-    const fs::path folder = fresh_folder("kinds");
+    const fs::path folder = scratch_folder("kinds");
     std::ofstream(folder / "file") << "text";
     REQUIRE(::mkfifo((folder / "pipe").c_str(), 0600) == 0);
     CHECK(is_regular_file(folder / "file"));

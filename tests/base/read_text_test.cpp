@@ -5,12 +5,13 @@
 #include <filesystem>
 #include <fstream>
 
+#include "scratch.h"
+
 using namespace lyr;
 namespace fs = std::filesystem;
 
 TEST_CASE("read text: all of a file up to the limit, and not a byte more") {
-    const fs::path folder = fs::path(LYR_BUILD) / "test-read-text";
-    fs::create_directories(folder);
+    const fs::path folder = lyr::tests::scratch_folder("read-text");
     for (const std::size_t size : {0u, 1u, 65'535u, 65'536u, 65'537u, 300'000u}) {
         CAPTURE(size);
         std::string text(size, 'x');
@@ -27,8 +28,7 @@ TEST_CASE("read text: all of a file up to the limit, and not a byte more") {
 }
 
 TEST_CASE("read text: the first bytes are looked at before the rest is read, once") {
-    const fs::path folder = fs::path(LYR_BUILD) / "test-read-text";
-    fs::create_directories(folder);
+    const fs::path folder = lyr::tests::scratch_folder("read-text");
     for (const std::size_t size : {0u, 3u, 300'000u}) {
         CAPTURE(size);
         std::ofstream(folder / "head", std::ios::binary) << std::string(size, 'x');

@@ -14,10 +14,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "base/fresh_folder.h"
+#include "scratch.h"
 
 using namespace lyr;
-using lyr::tests::fresh_folder;
+using lyr::tests::scratch_folder;
 namespace fs = std::filesystem;
 
 namespace {
@@ -53,7 +53,7 @@ std::size_t entries(const fs::path& folder) {
 }  // namespace
 
 TEST_CASE("replace file 1: the old file stands until the new one is whole") {
-    const fs::path folder = fresh_folder("commit"), path = folder / "out";
+    const fs::path folder = scratch_folder("commit"), path = folder / "out";
     std::ofstream(path) << "old";
     auto file = ReplaceFile::open(path);
     REQUIRE(file);
@@ -65,7 +65,7 @@ TEST_CASE("replace file 1: the old file stands until the new one is whole") {
 }
 
 TEST_CASE("replace file 1: flushed is not committed") {
-    const fs::path folder = fresh_folder("flush"), path = folder / "out";
+    const fs::path folder = scratch_folder("flush"), path = folder / "out";
     std::ofstream(path) << "old";
     auto file = ReplaceFile::open(path);
     REQUIRE(file);
@@ -79,7 +79,7 @@ TEST_CASE("replace file 1: flushed is not committed") {
 }
 
 TEST_CASE("replace file 5: a file that is replaced hands its permissions on") {
-    const fs::path folder = fresh_folder("permissions"), path = folder / "out";
+    const fs::path folder = scratch_folder("permissions"), path = folder / "out";
     for (const auto permissions : {fs::perms{0600}, fs::perms{0755}, fs::perms{0666}}) {
         std::ofstream(path) << "old";
         fs::permissions(path, permissions);
@@ -91,7 +91,7 @@ TEST_CASE("replace file 5: a file that is replaced hands its permissions on") {
 }
 
 TEST_CASE("replace file: a leftover under the temporary name is not written into") {
-    const fs::path folder = fresh_folder("leftover"), path = folder / "out";
+    const fs::path folder = scratch_folder("leftover"), path = folder / "out";
     std::ofstream(folder / "other") << "other";
     fs::create_symlink("other", path.string() + '.' + std::to_string(::getpid()) + ".part");
     auto file = ReplaceFile::open(path);
@@ -104,7 +104,7 @@ TEST_CASE("replace file: a leftover under the temporary name is not written into
 }
 
 TEST_CASE("replace file 2: what is not committed is removed, an exception included") {
-    const fs::path folder = fresh_folder("abandon"), path = folder / "out";
+    const fs::path folder = scratch_folder("abandon"), path = folder / "out";
     { REQUIRE(ReplaceFile::open(path)); }
     CHECK(entries(folder) == 0);
     const auto throwing = [&] {
@@ -125,7 +125,7 @@ TEST_CASE("replace file 3: a device is written directly") {
 }
 
 TEST_CASE("replace file 3: an open descriptor is written where it stands, by any of its names") {
-    const fs::path folder = fresh_folder("descriptor");
+    const fs::path folder = scratch_folder("descriptor");
     fs::create_symlink("/dev/stdout", folder / "link");
     const fs::path before = fs::read_symlink("/dev/stdout");
     for (const std::string& name :
@@ -166,7 +166,7 @@ TEST_CASE("replace file 3: a descriptor that cannot be written is said to be bad
 }
 
 TEST_CASE("replace file 4: a link stays and its target is replaced") {
-    const fs::path folder = fresh_folder("link"), target = folder / "target",
+    const fs::path folder = scratch_folder("link"), target = folder / "target",
                    link = folder / "link";
     std::ofstream(target) << "old";
     fs::create_symlink("target", link);
@@ -180,7 +180,7 @@ TEST_CASE("replace file 4: a link stays and its target is replaced") {
 }
 
 TEST_CASE("replace file 4: a link to a file that is not there yet stays, and the file is made") {
-    const fs::path folder = fresh_folder("dangling");
+    const fs::path folder = scratch_folder("dangling");
     fs::create_directories(folder / "far" / "away");
     fs::create_symlink("../target", folder / "far" / "second");
     fs::create_symlink("far/second", folder / "first");
@@ -196,7 +196,7 @@ TEST_CASE("replace file 4: a link to a file that is not there yet stays, and the
 }
 
 TEST_CASE("replace file 4: a link that cannot be followed is an error and stays") {
-    const fs::path folder = fresh_folder("circle");
+    const fs::path folder = scratch_folder("circle");
     fs::create_symlink("b", folder / "a");
     fs::create_symlink("a", folder / "b");
     fs::create_symlink("missing/out", folder / "nowhere");
@@ -223,7 +223,7 @@ TEST_CASE("replace file 6: the first failure is reported, however much is writte
 }
 
 TEST_CASE("replace file 2: the end of the process takes what is not committed with it") {
-    const fs::path folder = fresh_folder("end");
+    const fs::path folder = scratch_folder("end");
     std::ofstream(folder / "replaced") << "old";
     const pid_t child = ::fork();
     REQUIRE(child >= 0);
@@ -245,7 +245,7 @@ TEST_CASE("replace file 2: the end of the process takes what is not committed wi
 }
 
 TEST_CASE("replace file: errors are of output and name the path") {
-    const fs::path folder = fresh_folder("errors");
+    const fs::path folder = scratch_folder("errors");
     for (const fs::path& path : {folder, folder / "missing" / "out"}) {
         const auto file = ReplaceFile::open(path);
         REQUIRE(!file);

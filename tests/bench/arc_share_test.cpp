@@ -9,6 +9,7 @@
 #include "format/arc.h"
 #include "format/reader.h"
 #include "format/writer.h"
+#include "scratch.h"
 
 using namespace lyr;
 using namespace lyr::bench;
@@ -23,10 +24,8 @@ struct Part {
 
 Part printed(const std::string& file, const Vector3& up = Vector3::UnitZ(),
              std::array<double, 2> at_mm = {0, 0}) {
-    const std::string folder = std::string(LYR_BUILD) + "/test-arcs/";
-    std::filesystem::create_directories(folder);
     Part part;
-    part.lyr = folder + "part.lyr";
+    part.lyr = lyr::tests::scratch("part.lyr");
     part.options.up = up;
     part.options.profile.layer.height_mm = part.options.profile.layer.first_height_mm = 0.4;
     part.options.profile.infill.density = 0;

@@ -21,6 +21,7 @@
 #include "format/layer_record.h"
 #include "format/reader.h"
 #include "format/writer.h"
+#include "scratch.h"
 
 namespace lyr::format::test {
 
@@ -29,9 +30,9 @@ using FileBytes = std::vector<std::byte>;
 inline constexpr Quantum micrometres{1000};
 inline constexpr PathStyle wall_style{.role = Role::outer_wall, .width_mm = 0.45, .height_mm = 0.2};
 
-// A path in the build folder for one test's file.
+// A path for one test's file.
 inline std::string scratch(const std::string& name) {
-    return std::string(LYR_BUILD) + "/" + name + ".lyr";
+    return tests::scratch(name + ".lyr");
 }
 
 inline FileBytes load(const std::string& path) {

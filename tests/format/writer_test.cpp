@@ -10,6 +10,7 @@
 
 #include "files.h"
 #include "sample.h"
+#include "scratch.h"
 #include "worked_example.h"
 
 using namespace lyr;
@@ -31,13 +32,6 @@ std::size_t files_in(const std::string& folder) {
     for (const auto& entry : std::filesystem::directory_iterator(folder))
         count += entry.is_regular_file();
     return count;
-}
-
-std::string folder(const std::string& name) {
-    const std::string path = std::string(LYR_BUILD) + "/" + name;
-    std::filesystem::remove_all(path);
-    std::filesystem::create_directories(path);
-    return path;
 }
 
 // What finish() says of a layer that one call has spoilt.
@@ -181,7 +175,7 @@ TEST_CASE("writer 1: arcs of the widest kind and their rounding stay what they a
 }
 
 TEST_CASE("writer 5: the file is whole or as it was, and nothing else stays") {
-    const std::string where = folder("writer_failures");
+    const std::string where = lyr::tests::scratch_folder("writer_failures");
     const std::string path = where + "/part.lyr";
     {
         auto writer = Writer::create(path, micrometres, {});

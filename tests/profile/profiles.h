@@ -10,16 +10,13 @@
 
 #include "profile/keys.h"
 #include "profile/resolve.h"
+#include "scratch.h"
 
 namespace lyr::profile::tests {
 
 class Folder {
 public:
-    explicit Folder(const std::string& name)
-        : path_(std::filesystem::path(LYR_BUILD) / "test-profile" / name) {
-        std::filesystem::remove_all(path_);
-        std::filesystem::create_directories(path_);
-    }
+    explicit Folder(const std::string& name) : path_(lyr::tests::scratch_folder(name)) {}
 
     // The path of the file, which is written.
     std::string write(const std::string& name, const std::string& text) const {

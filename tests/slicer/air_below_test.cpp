@@ -11,6 +11,7 @@
 #include "kernel/brep/assembly.h"
 #include "kernel/brep/placement.h"
 #include "kernel/solids.h"
+#include "scratch.h"
 #include "slicer/slicer.h"
 
 using namespace lyr;
@@ -38,11 +39,9 @@ Model blocks(const std::vector<Block>& list, double turn_rad = 0) {
 }
 
 Diagnostics said_of(const Model& model, const Options& options = {}) {
-    const std::string folder = std::string(LYR_BUILD) + "/test-air-below/";
-    std::filesystem::create_directories(folder);
     Diagnostics diagnostics;
     REQUIRE(print(
-        model, "blocks", folder + "blocks.lyr", "", options,
+        model, "blocks", lyr::tests::scratch("blocks.lyr"), "", options,
         [](const char*, std::size_t, std::size_t) {}, diagnostics));
     return diagnostics;
 }

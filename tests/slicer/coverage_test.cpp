@@ -9,6 +9,7 @@
 #include "format/reader.h"
 #include "kernel/brep/placement.h"
 #include "kernel/toolpath/fills.h"
+#include "scratch.h"
 #include "slicer/bounds.h"
 #include "slicer/layers.h"
 #include "slicer/slicer.h"
@@ -143,9 +144,7 @@ void check_coverage(const Part& part, Options options) {
     const Eigen::AlignedBox3d box = bounding_box(*model, options.tolerance());
     const Model placed = transformed(*model, Eigen::Affine3d(Eigen::Translation3d(-box.min())));
     const Cutter cutter(placed, options.tolerance());
-    const std::string folder = std::string(LYR_BUILD) + "/test-coverage/";
-    std::filesystem::create_directories(folder);
-    const std::string lyr = folder + part.file + ".lyr";
+    const std::string lyr = lyr::tests::scratch(std::string(part.file) + ".lyr");
     REQUIRE(print(
         *model, part.file, lyr, "", options, [](const char*, std::size_t, std::size_t) {},
         diagnostics));

@@ -13,6 +13,7 @@
 #include "format/reader.h"
 #include "kernel/brep/placement.h"
 #include "kernel/solids.h"
+#include "scratch.h"
 #include "slicer/slicer.h"
 
 using namespace lyr;
@@ -73,13 +74,11 @@ void add(const format::Operation& operation, format::Quantum quantum, Printed& p
 }
 
 Printed printed(const Model& model, const Options& options) {
-    const std::string folder = std::string(LYR_BUILD) + "/test-internal-bridge/";
-    std::filesystem::create_directories(folder);
     Printed result;
     REQUIRE(print(
-        model, "cube", folder + "cube.lyr", "", options,
+        model, "cube", lyr::tests::scratch("cube.lyr"), "", options,
         [](const char*, std::size_t, std::size_t) {}, result.diagnostics));
-    auto reader = format::Reader::open(folder + "cube.lyr");
+    auto reader = format::Reader::open(lyr::tests::scratch("cube.lyr"));
     REQUIRE(reader);
     format::PathStyle style;
     double fan = 0;
@@ -89,7 +88,7 @@ Printed printed(const Model& model, const Options& options) {
         if (!*operation) break;
         add(**operation, reader->header().quantum, result, style, fan);
     }
-    std::ifstream file(folder + "cube.lyr", std::ios::binary);
+    std::ifstream file(lyr::tests::scratch("cube.lyr"), std::ios::binary);
     result.bytes.assign(std::istreambuf_iterator<char>(file), {});
     return result;
 }

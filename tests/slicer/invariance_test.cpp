@@ -12,6 +12,7 @@
 #include <regex>
 
 #include "kernel/section/cutter.h"
+#include "scratch.h"
 #include "slicer/layers.h"
 #include "slicer/scene.h"
 #include "slicer/slicer.h"
@@ -102,16 +103,15 @@ Model loaded(const std::string& path) {
 }  // namespace
 
 TEST_CASE("the order of instances and their numbers change no section") {
-    const std::string folder = std::string(LYR_BUILD) + "/test-invariance/";
-    std::filesystem::create_directories(folder);
     for (const std::string& file : files) {
         CAPTURE(file);
         const Model model = loaded(parts + file);
         const Cutter cutter(model, {});
         const HeightRange range = cutter.height_range();
         for (unsigned seed = 1; seed <= 2; ++seed) {
-            std::ofstream(folder + file, std::ios::binary) << shuffled(text_of(parts + file), seed);
-            const Model other = loaded(folder + file);
+            std::ofstream(lyr::tests::scratch(file), std::ios::binary)
+                << shuffled(text_of(parts + file), seed);
+            const Model other = loaded(lyr::tests::scratch(file));
             CHECK(other.faces.size() == model.faces.size());
             const Cutter other_cutter(other, {});
             for (double share = 0.013; share < 1; share += 0.047) {

@@ -6,6 +6,8 @@
 #include <fstream>
 #include <new>
 
+#include "scratch.h"
+
 using namespace lyr;
 using namespace lyr::slicer;
 
@@ -58,7 +60,7 @@ TEST_CASE("slicer: what a thread throws is thrown on, on any number of threads")
 }
 
 TEST_CASE("slicer: heights are read line by line and a wrong one is named with its line") {
-    const std::string path = std::string(LYR_BUILD) + "/heights.txt";
+    const std::string path = lyr::tests::scratch("heights.txt");
     std::ofstream(path) << "# heights\n1.5\n\n  -2e-3\t\r\n7\n";
     const auto good = read_heights(path);
     REQUIRE(good);
@@ -71,7 +73,7 @@ TEST_CASE("slicer: heights are read line by line and a wrong one is named with i
 }
 
 TEST_CASE("slicer: the bytes of a wrong height do not reach the terminal, nor all of a long line") {
-    const std::string path = std::string(LYR_BUILD) + "/heights.txt";
+    const std::string path = lyr::tests::scratch("heights.txt");
     for (const std::string& line :
          {std::string("\x1b]0;title\x07"), std::string(1'000'000, '\xff'), std::string("nan"),
           std::string("1e999"), std::string(1, '\0')}) {

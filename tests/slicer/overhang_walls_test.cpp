@@ -16,6 +16,7 @@
 #include "kernel/brep/placement.h"
 #include "kernel/region/regions.h"
 #include "kernel/solids.h"
+#include "scratch.h"
 
 using namespace lyr;
 using namespace lyr::slicer;
@@ -166,13 +167,11 @@ TEST_CASE("walls over a counterbore were printed as if the layer below held them
     Options options;
     options.threads = 1;
     options.profile.fan.min = options.profile.fan.max = 0.3;
-    const std::string folder = std::string(LYR_BUILD) + "/test-overhang-walls/";
-    std::filesystem::create_directories(folder);
     Diagnostics diagnostics;
     REQUIRE(print(
-        part, "counterbore", folder + "part.lyr", "", options,
+        part, "counterbore", lyr::tests::scratch("part.lyr"), "", options,
         [](const char*, std::size_t, std::size_t) {}, diagnostics));
-    auto reader = format::Reader::open(folder + "part.lyr");
+    auto reader = format::Reader::open(lyr::tests::scratch("part.lyr"));
     REQUIRE(reader);
     double duty = 0;
     format::PathStyle style;

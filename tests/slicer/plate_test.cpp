@@ -14,6 +14,7 @@
 
 #include "format/arc.h"
 #include "format/reader.h"
+#include "scratch.h"
 
 using namespace lyr;
 using namespace lyr::slicer;
@@ -183,15 +184,12 @@ TEST_CASE("plate: the outline holds all boxes and nothing where none is") {
 
 namespace {
 
-const std::string folder = std::string(LYR_BUILD) + "/test-plate/";
-
 Summary printed(const std::string& part, const std::string& name, const Options& options) {
-    std::filesystem::create_directories(folder);
     Diagnostics diagnostics;
     auto model = load(std::string(LYR_FIXTURES) + "/parts/" + part, options, diagnostics);
     REQUIRE(model);
     const auto summary = print(
-        std::move(*model), part, folder + name, "", options,
+        std::move(*model), part, lyr::tests::scratch(name), "", options,
         [](const char*, std::size_t, std::size_t) {}, diagnostics);
     REQUIRE(summary);
     CHECK(diagnostics.empty());
@@ -268,7 +266,7 @@ private:
 };
 
 Traces traces_of(const std::string& name) {
-    auto reader = format::Reader::open(folder + name);
+    auto reader = format::Reader::open(lyr::tests::scratch(name));
     REQUIRE(reader);
     Tracer tracer;
     while (const format::Operation* operation = reader->read()) tracer.take(*operation, *reader);
@@ -310,7 +308,7 @@ TEST_CASE("plate: every copy is printed like the only one, in every layer, whole
     const Summary summary = printed("cube_hole.step", "five.lyr", options);
     CHECK(summary.placed == "5 copies in 3 rows, 6 mm apart, layer by layer\n");
     check_copies(traces_of("one.lyr"), traces_of("five.lyr"), 5);
-    auto reader = format::Reader::open(folder + "five.lyr");
+    auto reader = format::Reader::open(lyr::tests::scratch("five.lyr"));
     REQUIRE(reader);
     CHECK(reader->header().metadata.objects.size() == 5);
     CHECK(reader->header().metadata.objects[4] == "cube_hole.step 5");
@@ -349,7 +347,7 @@ TEST_CASE("plate: one skirt goes around all copies, brims around each do not tou
     for (const auto kind : {profile::AdhesionKind::skirt, profile::AdhesionKind::brim}) {
         options.profile.adhesion.kind = kind;
         const Summary summary = printed("cuboid.step", "around.lyr", options);
-        auto reader = format::Reader::open(folder + "around.lyr");
+        auto reader = format::Reader::open(lyr::tests::scratch("around.lyr"));
         REQUIRE(reader);
         std::map<std::uint32_t, Box2> around;
         std::uint32_t object = 0;
@@ -402,7 +400,7 @@ TEST_CASE(
         // A layer may be slowed down alone, but not with three others.
         CHECK(four.estimate.time_s() < 4.1 * one.estimate.time_s());
         CHECK(four.estimate.time_s() > 2 * one.estimate.time_s());
-        std::ifstream file(folder + "threads.lyr", std::ios::binary);
+        std::ifstream file(lyr::tests::scratch("threads.lyr"), std::ios::binary);
         results.insert({std::istreambuf_iterator<char>(file), {}});
     }
     CHECK(results.size() == 1);
@@ -414,7 +412,7 @@ TEST_CASE("travels inside of a part never retracted, however long") {
         Options options = thick_layers();
         options.profile.travel.retract_inside_mm = inside_mm;
         printed("cuboid.step", "inside.lyr", options);
-        auto reader = format::Reader::open(folder + "inside.lyr");
+        auto reader = format::Reader::open(lyr::tests::scratch("inside.lyr"));
         REQUIRE(reader);
         double depth_mm = 0, travelled_mm = 0;
         while (const format::Operation* operation = reader->read()) {
@@ -442,7 +440,7 @@ TEST_CASE(
     options.profile.travel.retract_min_travel_mm = 0.1;
     options.profile.plate.at_mm = {-40, -10};
     printed("cuboid.step", "origin.lyr", options);
-    auto reader = format::Reader::open(folder + "origin.lyr");
+    auto reader = format::Reader::open(lyr::tests::scratch("origin.lyr"));
     REQUIRE(reader);
     bool drawn_back = false;
     while (const format::Operation* operation = reader->read()) {

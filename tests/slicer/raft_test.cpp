@@ -15,6 +15,7 @@
 #include "kernel/brep/assembly.h"
 #include "kernel/brep/placement.h"
 #include "kernel/solids.h"
+#include "scratch.h"
 #include "slicer/scene.h"
 #include "slicer/slicer.h"
 
@@ -38,16 +39,14 @@ struct LayerRoles {
 };
 
 std::vector<LayerRoles> printed(const Model& model, const Options& options, Summary* summary) {
-    const std::string folder = std::string(LYR_BUILD) + "/test-raft/";
-    std::filesystem::create_directories(folder);
     Diagnostics diagnostics;
     const auto done = print(
-        model, "part", folder + "part.lyr", "", options,
+        model, "part", lyr::tests::scratch("part.lyr"), "", options,
         [](const char*, std::size_t, std::size_t) {}, diagnostics);
     REQUIRE(done);
     CHECK(diagnostics.empty());
     *summary = *done;
-    auto reader = format::Reader::open(folder + "part.lyr");
+    auto reader = format::Reader::open(lyr::tests::scratch("part.lyr"));
     REQUIRE(reader);
     std::vector<LayerRoles> layers;
     for (;;) {
@@ -132,7 +131,7 @@ TEST_CASE("raft: a part lower than half of its layers on the raft is refused, no
         Options options = with_raft(3);
         options.profile.layer.height_mm = layer_mm;
         options.profile.layer.first_height_mm = first_mm;
-        const std::string path = std::string(LYR_BUILD) + "/test-raft-low.lyr";
+        const std::string path = lyr::tests::scratch("low.lyr");
         Diagnostics diagnostics;
         const auto done = print(
             box(20, 20, 0.12), "low", path, "", options,

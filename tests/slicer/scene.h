@@ -9,18 +9,14 @@
 #include <utility>
 
 #include "kernel/brep/placement.h"
+#include "scratch.h"
 #include "slicer/outline.h"
 
 namespace lyr::testing {
 
 inline const std::string parts = std::string(LYR_FIXTURES) + "/parts/";
 
-// Its folder is there.
-inline std::string scratch(const std::string& name) {
-    const std::string folder = std::string(LYR_BUILD) + "/test-slicer/";
-    std::filesystem::create_directories(folder);
-    return folder + name;
-}
+using tests::scratch;
 
 inline std::string bytes_of(const std::string& path) {
     std::ifstream file(path, std::ios::binary);

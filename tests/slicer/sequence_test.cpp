@@ -8,6 +8,7 @@
 #include <set>
 
 #include "format/reader.h"
+#include "scratch.h"
 #include "slicer/plate.h"
 
 using namespace lyr;
@@ -107,15 +108,12 @@ TEST_CASE(
 
 namespace {
 
-const std::string sequence_folder = std::string(LYR_BUILD) + "/test-sequence/";
-
 Summary printed(const std::string& name, const Options& options) {
-    std::filesystem::create_directories(sequence_folder);
     Diagnostics diagnostics;
     auto model = load(std::string(LYR_FIXTURES) + "/parts/cube_hole.step", options, diagnostics);
     REQUIRE(model);
     const auto summary = print(
-        std::move(*model), "cube_hole.step", sequence_folder + name, "", options,
+        std::move(*model), "cube_hole.step", lyr::tests::scratch(name), "", options,
         [](const char*, std::size_t, std::size_t) {}, diagnostics);
     REQUIRE(summary);
     CHECK(diagnostics.empty());
@@ -139,7 +137,7 @@ struct Layer {
 };
 
 std::vector<Layer> layers_of(const std::string& name) {
-    auto reader = format::Reader::open(sequence_folder + name);
+    auto reader = format::Reader::open(lyr::tests::scratch(name));
     REQUIRE(reader);
     std::vector<Layer> layers;
     double head_mm = 0;
@@ -191,7 +189,7 @@ TEST_CASE("sequence: a copy costs what one part costs, and the same bytes on any
     for (const unsigned threads : {1u, 4u}) {
         options.threads = threads;
         three = printed("threads.lyr", options);
-        std::ifstream file(sequence_folder + "threads.lyr", std::ios::binary);
+        std::ifstream file(lyr::tests::scratch("threads.lyr"), std::ios::binary);
         results.insert({std::istreambuf_iterator<char>(file), {}});
     }
     CHECK(results.size() == 1);
@@ -208,7 +206,7 @@ TEST_CASE("sequence: a skirt is printed once, before everything, around all copi
     Options options = three_copies();
     options.profile.adhesion.kind = profile::AdhesionKind::skirt;
     printed("skirt.lyr", options);
-    auto reader = format::Reader::open(sequence_folder + "skirt.lyr");
+    auto reader = format::Reader::open(lyr::tests::scratch("skirt.lyr"));
     REQUIRE(reader);
     Box2 skirt, all;
     std::set<std::uint32_t> with_skirt;

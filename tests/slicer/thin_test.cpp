@@ -8,6 +8,7 @@
 #include "kernel/brep/assembly.h"
 #include "kernel/brep/placement.h"
 #include "kernel/solids.h"
+#include "scratch.h"
 #include "slicer/scene.h"
 #include "slicer/slicer.h"
 
@@ -30,11 +31,9 @@ struct Measured {
 };
 
 Measured measured(const Model& model, const Options& options = {}) {
-    const std::string folder = std::string(LYR_BUILD) + "/test-thin/";
-    std::filesystem::create_directories(folder);
     Diagnostics diagnostics;
     auto summary = print(
-        model, "thin", folder + "thin.lyr", "", options,
+        model, "thin", lyr::tests::scratch("thin.lyr"), "", options,
         [](const char*, std::size_t, std::size_t) {}, diagnostics);
     return {std::move(summary), std::move(diagnostics)};
 }

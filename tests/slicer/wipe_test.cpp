@@ -11,6 +11,7 @@
 #include "format/arc.h"
 #include "format/reader.h"
 #include "kernel/contour/turned_round.h"
+#include "scratch.h"
 #include "slicer/slicer.h"
 
 using namespace lyr;
@@ -175,9 +176,7 @@ std::vector<PrintedSegment> printed_of(const format::Operation& operation) {
 }  // namespace
 
 TEST_CASE("wipe: in a print every retraction wipes along what was printed since the last one") {
-    const std::string folder = std::string(LYR_BUILD) + "/test-wipe/";
-    std::filesystem::create_directories(folder);
-    const std::string lyr = folder + "wiped.lyr";
+    const std::string lyr = lyr::tests::scratch("wiped.lyr");
     Options options;
     options.profile.layer.height_mm = options.profile.layer.first_height_mm = 0.35;
     options.profile.adhesion.kind = profile::AdhesionKind::skirt;

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "format/sample.h"
+#include "scratch.h"
 
 using namespace lyr;
 using namespace lyr::format;
@@ -39,7 +40,7 @@ EncodedLayer layer_of(const Part& part) {
 
 std::string write(const std::string& name, const std::vector<Part>& parts,
                   const Metadata& metadata = {}) {
-    const std::string path = std::string(LYR_BUILD) + "/diff-" + name + ".lyr";
+    const std::string path = lyr::tests::scratch("diff-" + name + ".lyr");
     const Quantum quantum = parts.empty() ? Quantum{1000} : parts.front().quantum;
     auto writer = Writer::create(path, quantum, metadata);
     REQUIRE(writer.ok());
@@ -150,7 +151,7 @@ TEST_CASE("diff 1: metadata and settings by their keys, where values come from a
 
 TEST_CASE("diff: random prints differ from others and not from themselves; the text says so") {
     const auto random = [](std::uint32_t seed) {
-        const std::string path = std::string(LYR_BUILD) + "/diff-random.lyr" + std::to_string(seed);
+        const std::string path = lyr::tests::scratch("diff-random.lyr" + std::to_string(seed));
         auto writer = Writer::create(path, Quantum{1000}, {});
         auto layer = test::RandomLayer(seed, 0.2, Quantum{1000}, 2000).finish();
         REQUIRE(layer.ok());

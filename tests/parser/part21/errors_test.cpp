@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "parser/part21/step_text.h"
+#include "scratch.h"
 
 namespace lyr::part21 {
 namespace {
@@ -180,8 +181,7 @@ TEST_CASE("files that cannot be read") {
 }
 
 TEST_CASE("files are mapped, whatever their size against the page") {
-    const std::string path =
-        std::string(LYR_BUILD) + "/part21_page_" + std::to_string(::getpid()) + ".stp";
+    const std::string path = tests::scratch("page.stp");
     for (const std::size_t size : {4095u, 4096u, 4097u, 8192u}) {
         std::string text = step("#1=A('');");
         text.insert(text.find("''") + 1, std::string(size - text.size(), 'x'));

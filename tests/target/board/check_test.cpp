@@ -9,6 +9,8 @@
 #include <fstream>
 #include <random>
 
+#include "scratch.h"
+
 using namespace lyr;
 using namespace lyr::board;
 
@@ -17,8 +19,7 @@ namespace {
 // The files of a board on which everything is right.
 class Folder {
 public:
-    Folder() : root_(std::filesystem::temp_directory_path() / "lyr_check_test") {
-        std::filesystem::remove_all(root_);
+    Folder() : root_(lyr::tests::scratch_folder("board")) {
         put("sys/kernel/realtime", "1\n");
         put("proc/sys/kernel/osrelease", "6.1.0-rt-arm64\n");
         put("proc/sys/kernel/sched_rt_runtime_us", "-1\n");

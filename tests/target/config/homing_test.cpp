@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "scratch.h"
 #include "target/config/printer.h"
 
 using namespace lyr;
@@ -111,8 +112,7 @@ TEST_CASE("homing keys: a delta has the endstops of all towers, at the top") {
 }
 
 TEST_CASE("printer 7: the calibration file stands above the printer's file, and may be missing") {
-    const auto folder = std::filesystem::temp_directory_path() / "lyr_calibration_test";
-    std::filesystem::create_directories(folder);
+    const std::filesystem::path folder = lyr::tests::scratch_folder("calibration");
     const std::string printer_path = (folder / "p.toml").string();
     std::ofstream(printer_path) << "calibration_file = \"found.toml\"\n" + axes;
     std::filesystem::remove(folder / "found.toml");

@@ -12,15 +12,13 @@
 #include <filesystem>
 #include <string>
 
+#include "scratch.h"
 #include "target/control/socket_address.h"
 
 namespace lyr::tests {
 
 inline std::string socket_path(const std::string& name) {
-    const auto folder =
-        std::filesystem::temp_directory_path() / ("lyr_control_" + std::to_string(::getpid()));
-    std::filesystem::create_directories(folder);
-    return (folder / (name + ".sock")).string();
+    return scratch(name + ".sock");
 }
 
 class Connection {

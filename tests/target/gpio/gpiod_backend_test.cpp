@@ -7,6 +7,7 @@
 #include <fstream>
 #include <random>
 
+#include "scratch.h"
 #include "target/gpio/fake_board.h"
 #include "target/gpio/gpiod_chip.h"
 #include "target/gpio/gpiod_inputs.h"
@@ -185,8 +186,7 @@ TEST_CASE("gpiod 5: a line is found without being held") {
 
 TEST_CASE("lines 1: a chip is found by its label among the devices") {
     set_up_board();
-    const auto folder = std::filesystem::temp_directory_path() / "lyr_gpiod_labels";
-    std::filesystem::create_directories(folder);
+    const std::filesystem::path folder = lyr::tests::scratch_folder("labels");
     for (const char* name : {"gpiochip0", "gpiochip1", "gpiochip2", "other"})
         std::ofstream(folder / name) << "";
     const auto found = open_chip({"x.step", "expander", 0u}, folder.string());

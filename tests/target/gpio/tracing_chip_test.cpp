@@ -9,21 +9,19 @@
 #include <map>
 #include <random>
 
+#include "scratch.h"
 #include "target/gpio/mock_chip.h"
 #include "target/gpio/wave_file.h"
 
 using namespace lyr;
 using namespace lyr::gpio;
 using lyr::tests::read_wave;
+using lyr::tests::scratch;
 using lyr::tests::Wave;
 
 namespace {
 
 const std::array<std::string, 3> names{"x.step", "x.dir", "y step#2"};
-
-std::string scratch(const char* name) {
-    return (std::filesystem::temp_directory_path() / name).string();
-}
 
 }  // namespace
 

@@ -15,6 +15,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "scratch.h"
 #include "target/gpio/mock_chip.h"
 #include "target/gpio/mock_inputs.h"
 #include "target/run/patient_printer.h"
@@ -169,7 +170,7 @@ TEST_CASE("print 9: the cancel button, the emergency line, and lines that are lo
 }
 
 TEST_CASE("watchdog 1, 2: it is fed, and stopped in order; one that is not there is an error") {
-    const std::string path = (std::filesystem::temp_directory_path() / "lyr_run_watchdog").string();
+    const std::string path = lyr::tests::scratch("watchdog");
     { std::ofstream made(path); }
     {
         Result<Watchdog> watchdog = Watchdog::open({path, 15});
@@ -191,7 +192,7 @@ TEST_CASE("watchdog 1, 2: it is fed, and stopped in order; one that is not there
 TEST_CASE("watchdog 3: the init system hears of a print, and nothing happens without one") {
     ::unsetenv("NOTIFY_SOCKET");
     notify("READY=1");
-    const std::string path = (std::filesystem::temp_directory_path() / "lyr_run_notify").string();
+    const std::string path = lyr::tests::scratch("notify");
     std::filesystem::remove(path);
     sockaddr_un address{};
     address.sun_family = AF_UNIX;

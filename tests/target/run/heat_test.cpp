@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "scratch.h"
 #include "target/gpio/mock_chip.h"
 #include "target/run/demands.h"
 #include "target/run/event_stream.h"
@@ -527,8 +528,7 @@ TEST_CASE("heating 1: what is missing to heat is told by its key or file") {
     CHECK(complaint().find("heater.tool.output") != std::string::npos);
     printer.heaters[config::heater_tool]->output = config::Pin{"gpiochip987", 3u, false};
     CHECK(complaint().find("/nonexistent/in_voltage0_raw") != std::string::npos);
-    const std::string sensor =
-        (std::filesystem::temp_directory_path() / "lyr_run_heat_sensor").string();
+    const std::string sensor = lyr::tests::scratch("heat_sensor");
     std::ofstream(sensor) << "3900\n";
     printer.heaters[config::heater_tool]->sensor.file = sensor;
     printer.heaters[config::heater_bed].reset();

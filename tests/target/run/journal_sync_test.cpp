@@ -9,6 +9,7 @@
 #include <cstdarg>
 #include <filesystem>
 
+#include "scratch.h"
 #include "target/gpio/mock_chip.h"
 #include "target/run/cut_off.h"
 #include "target/run/patient_printer.h"
@@ -59,7 +60,7 @@ extern "C" int open(const char* path, int flags, ...) {
 
 TEST_CASE(
     "journal 2: an entry is on the disk when write() returns, its name too, or that is told") {
-    const std::string path = std::filesystem::temp_directory_path() / "lyr_synced.journal";
+    const std::string path = lyr::tests::scratch("synced.journal");
     std::filesystem::remove(path);
     name_syncs = 0;
     Result<Journal> journal = Journal::open(path);

@@ -12,6 +12,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "scratch.h"
+
 using namespace lyr;
 using namespace lyr::run;
 
@@ -47,7 +49,7 @@ struct Memory {
 };
 
 struct Bench {
-    std::string path = (std::filesystem::temp_directory_path() / "lyr_run_journal").string();
+    std::string path = lyr::tests::scratch("journal");
 
     Bench() { std::filesystem::remove(path); }
     ~Bench() { std::filesystem::remove(path); }
@@ -309,9 +311,7 @@ int open_on_full_disk(const std::string& folder) {
 }  // namespace
 
 TEST_CASE("journal: that a disk is full is known before anything moves, and no file is left") {
-    const std::filesystem::path folder =
-        std::filesystem::temp_directory_path() / "lyr_run_full_disk";
-    std::filesystem::create_directories(folder);
+    const std::filesystem::path folder = lyr::tests::scratch_folder("full_disk");
     const pid_t child = ::fork();
     if (child == 0) ::_exit(open_on_full_disk(folder));
     int status = 0;

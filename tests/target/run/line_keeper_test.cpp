@@ -12,6 +12,7 @@
 #include <fstream>
 #include <thread>
 
+#include "scratch.h"
 #include "target/run/heating.h"
 
 using namespace lyr;
@@ -46,7 +47,7 @@ private:
 };
 
 struct KeptLines {
-    std::string path = (std::filesystem::temp_directory_path() / "lyr_run_keeper").string();
+    std::string path = lyr::tests::scratch("keeper");
     std::string dropped = path + "_dropped";
 
     KeptLines() { remove(); }
@@ -276,9 +277,7 @@ TEST_CASE("line keeper 3: lines that came free late were given up after one try"
 TEST_CASE(
     "heating 1: a crash left a heater on that was a kernel PWM channel, where no output was a "
     "line") {
-    const std::filesystem::path folder =
-        std::filesystem::temp_directory_path() / "lyr_run_keeper_pwm";
-    std::filesystem::create_directories(folder);
+    const std::filesystem::path folder = lyr::tests::scratch_folder("keeper_pwm");
     for (const char* name : {"period", "duty_cycle", "enable", "sensor"})
         std::ofstream(folder / name) << 20'000'000 << '\n';
     std::ofstream(folder / "sensor") << 25 << '\n';

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "format/writer.h"
+#include "scratch.h"
 
 namespace lyr::tests {
 
@@ -209,11 +210,10 @@ std::string message_of(const Result<Value>& result) {
     return result ? std::string() : to_string(result.error());
 }
 
-// One layer a drawing; returns the path of the file, in the temporary folder.
+// One layer a drawing; returns the path of the file.
 inline std::string write_print(const std::string& name, const std::vector<Drawing>& drawings,
                                const Frame& frame = {}, const StateChange& change = {}) {
-    const std::string path =
-        (std::filesystem::temp_directory_path() / ("lyr_run_" + name + ".lyr")).string();
+    const std::string path = scratch(name + ".lyr");
     const format::Quantum quantum;
     Result<format::Writer> writer = format::Writer::create(path, quantum, {});
     REQUIRE(writer.ok());

@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "scratch.h"
 #include "target/gpio/mock_inputs.h"
 #include "target/run/print.h"
 #include "target/run/print_files.h"
@@ -50,7 +51,7 @@ public:
     }
 
 private:
-    std::string path_ = (std::filesystem::temp_directory_path() / "lyr_print_guard").string();
+    std::string path_ = lyr::tests::scratch("print_guard");
     int socket_ = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
 };
 

@@ -8,6 +8,7 @@
 #include <functional>
 #include <thread>
 
+#include "scratch.h"
 #include "target/gpio/mock_chip.h"
 #include "target/gpio/mock_inputs.h"
 #include "target/run/cut_off.h"
@@ -273,9 +274,7 @@ TEST_CASE(
 TEST_CASE(
     "print 7: a print left the height at which that of another file had rested on its printer") {
     config::Printer printer = patient_printer();
-    const auto folder = std::filesystem::temp_directory_path() / "lyr_run_others";
-    std::filesystem::remove_all(folder);
-    std::filesystem::create_directory(folder);
+    const std::filesystem::path folder = lyr::tests::scratch_folder("others");
     printer.recovery_folder = folder;
     const std::string rested = write_print("rested", {draw_stroke});
     const std::string elsewhere = write_print("elsewhere", {draw_stroke});

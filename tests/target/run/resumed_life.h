@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "scratch.h"
 #include "target/run/life.h"
 #include "target/run/print_files.h"
 
@@ -27,7 +28,7 @@ struct Resumed {
     Life life{printer, control, course, layers, desk, {"p.lyr", 6, 0}};
 
     explicit Resumed(bool is_lifted, const std::string& name, const JournalEntry& entry = {})
-        : journal(std::filesystem::temp_directory_path() / ("lyr_" + name + ".journal")) {
+        : journal(lyr::tests::scratch(name + ".journal")) {
         std::filesystem::remove(journal);
         printer.start_mm = {35, 25, is_lifted ? found_mm + 5 : 11.5};
         Result<Journal> opened = Journal::open(journal);

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "scratch.h"
 #include "target/gpio/mock_chip.h"
 #include "target/run/heating.h"
 
@@ -41,7 +42,7 @@ config::Printer wired_printer(const std::filesystem::path& pwm) {
 }  // namespace
 
 TEST_CASE("heating 4: heaters that a killed print left on are switched off, by line and channel") {
-    const auto pwm = std::filesystem::temp_directory_path() / "lyr_switch_off";
+    const auto pwm = lyr::tests::scratch("switch_off");
     const config::Printer printer = wired_printer(pwm);
     gpio::VirtualClock clock;
     std::vector<std::string> asked;
@@ -58,7 +59,7 @@ TEST_CASE("heating 4: heaters that a killed print left on are switched off, by l
 }
 
 TEST_CASE("heating 4: of a print that is at work nothing is touched") {
-    const auto pwm = std::filesystem::temp_directory_path() / "lyr_switch_off_busy";
+    const auto pwm = lyr::tests::scratch("switch_off_busy");
     const config::Printer printer = wired_printer(pwm);
     const Diagnostic busy{Severity::error, ExitStatus::machine, "held by lyrrun", {}};
     const Status off = switch_off(printer, [&](std::span<const gpio::LineRequest>) {

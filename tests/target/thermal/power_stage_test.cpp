@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "scratch.h"
 #include "target/gpio/mock_chip.h"
 
 using namespace lyr;
@@ -39,7 +40,7 @@ struct Bench {
 constexpr std::array<double, 3> full{1, 1, 1};
 
 struct PwmFolder {
-    std::string path = (std::filesystem::temp_directory_path() / "lyr_thermal_pwm").string();
+    std::string path = lyr::tests::scratch("pwm");
     PwmFolder() { std::filesystem::create_directories(path); }
     ~PwmFolder() { std::filesystem::remove_all(path); }
     void hold(const char* file, const std::string& text) const {

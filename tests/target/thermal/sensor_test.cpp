@@ -8,13 +8,15 @@
 #include <filesystem>
 #include <fstream>
 
+#include "scratch.h"
+
 using namespace lyr;
 using namespace lyr::thermal;
 
 namespace {
 
 struct TestFile {
-    std::string path = (std::filesystem::temp_directory_path() / "lyr_thermal_sensor").string();
+    std::string path = lyr::tests::scratch("sensor");
     ~TestFile() { std::filesystem::remove(path); }
     void hold(const std::string& text) const { std::ofstream(path) << text; }
 };
