@@ -171,6 +171,7 @@ Result<std::optional<run::Resumption>> resumption_of(const Arguments& arguments,
     if (!arguments.resume) return std::optional<run::Resumption>();
     Result<run::Resumption> found = run::find_resumption(printer, arguments.lyr_path);
     if (!found) return found.error();
+    show(program, run::lost_entry(printer, arguments.lyr_path));
     return std::optional(std::move(*found));
 }
 
@@ -178,6 +179,7 @@ Status tell_resumable(const Arguments& arguments, const config::Printer& printer
     if (Status cut_off = run::check_cut_off(printer, arguments.lyr_path); !cut_off) return cut_off;
     const Result<run::Resumption> found = run::find_resumption(printer, arguments.lyr_path);
     if (!found) return found.error();
+    show(program, run::lost_entry(printer, arguments.lyr_path));
     return tell(run::text_of(*found, arguments.lyr_path));
 }
 

@@ -107,6 +107,7 @@ struct Slots {
     std::optional<Numbered> latest;
     bool is_empty = true;
     bool has_other_version = false;
+    bool has_damage = false;
 };
 
 // What a full disk has no room for is found out before anything moves. A file system that cannot reserve is written to
@@ -124,8 +125,9 @@ Slots read_slots(int descriptor) {
         if (count > 0) slots.is_empty = false;
         slots.has_other_version |= std::memcmp(slot.data(), magic.data(), magic.size() - 1) == 0 &&
                                    static_cast<char>(slot[magic.size() - 1]) != magic.back();
-        if (count != static_cast<ssize_t>(slot.size())) continue;
-        const std::optional<Numbered> read = entry_of(slot);
+        const bool is_long_enough = count == static_cast<ssize_t>(slot.size());
+        const auto read = is_long_enough ? entry_of(slot) : std::nullopt;
+        slots.has_damage |= !read && slot != Slot{};
         if (read && (!slots.latest || read->sequence > slots.latest->sequence)) slots.latest = read;
     }
     return slots;
@@ -180,6 +182,14 @@ Result<std::optional<JournalEntry>> read_journal(const std::string& path) {
                           : "the journal is damaged, or the power failed before its first entry "
                             "was written: no entry is whole",
                       {.file = path}};
+}
+
+bool has_damage(const std::string& path) {
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0) return false;
+    const Slots slots = read_slots(descriptor);
+    ::close(descriptor);
+    return slots.has_damage;
 }
 
 bool is_kept(const std::string& path) {

@@ -51,6 +51,9 @@ struct JournalEntry {
 // None: no file, or an empty one. Errors (status input): it cannot be read, or nothing in it can be used.
 Result<std::optional<JournalEntry>> read_journal(const std::string& path);
 
+// Something in it is no whole entry, nor empty: a write was cut off, or bytes were changed since.
+bool has_damage(const std::string& path);
+
 // A print that is under way writes it.
 bool is_kept(const std::string& path);
 

@@ -186,6 +186,17 @@ Result<Resumption> find_resumption(const config::Printer& printer, const std::st
     return resumption;
 }
 
+Diagnostics lost_entry(const config::Printer& printer, const std::string& file) {
+    std::string path = journal_path(printer, file);
+    if (!has_damage(path)) return {};
+    return {
+        {Severity::warning,
+         ExitStatus::ok,
+         "one of its two entries is damaged, and the other one counts: if the power failed while "
+         "the later one was written, the head may stand a layer higher than is taken here",
+         {.file = std::move(path)}}};
+}
+
 Status check_cut_off(const config::Printer& printer, const std::string& file) {
     if (!is_kept(journal_path(printer, file))) return Done{};
     return refused("it is being printed now: `lyrctl status` says how far it is", file);

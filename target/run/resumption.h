@@ -4,6 +4,7 @@
 //  1. A print goes on at the start of the layer that the head was in, in the state that the file says for it.
 //  2. find_resumption() refuses (status input) when there is no journal, or the file is not the one that it was
 //     written for: not by name, but by all its bytes; or the printer is another one, as printer_identity.h says.
+//     lost_entry() warns where one of the journal is damaged, which may have been the latest.
 //  3. x and y of the head are those of start_mm: it was put there, or homed. Its height is that of the layer, before the
 //     first one that of start_mm, or where the journal says that it was at rest; it begins lifted by pause.lift_mm.
 //  4. Over a crooked bed, that height counts from the bed's at start_mm. Of a head that was not at rest, it is that
@@ -39,6 +40,8 @@ struct Resumption {
 };
 
 Result<Resumption> find_resumption(const config::Printer& printer, const std::string& file);
+
+Diagnostics lost_entry(const config::Printer& printer, const std::string& file);
 
 // Error (status input): a print that is under way keeps its journal.
 Status check_cut_off(const config::Printer& printer, const std::string& file);

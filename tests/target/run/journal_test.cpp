@@ -111,7 +111,7 @@ TEST_CASE("journal 1: a write that is cut at any byte leaves the entry before it
     const std::vector<std::string> states = states_of(bench, 8);
     for (std::uint32_t i = 1; i < states.size(); ++i) {
         const std::string &before = states[i - 1], &after = states[i];
-        std::size_t wrong = 0, old = 0;
+        std::size_t wrong = 0, old = 0, silent = 0;
         for (std::size_t cut = 0; cut <= after.size(); ++cut) {
             // The bytes before the cut are new, those behind it old, or not there yet.
             std::string torn = after.substr(0, cut);
@@ -120,9 +120,13 @@ TEST_CASE("journal 1: a write that is cut at any byte leaves the entry before it
             const std::optional<JournalEntry> read = bench.read();
             wrong += read != entry_of(i) && read != entry_of(i - 1);
             old += read == entry_of(i - 1);
+            silent += torn != before && torn != after && !has_damage(bench.path);
         }
         CHECK(wrong == 0);
         CHECK(old > 0);
+        CHECK(silent == 0);
+        bench.put(after);
+        CHECK_FALSE(has_damage(bench.path));
     }
 }
 
@@ -145,7 +149,7 @@ TEST_CASE("journal 1: any byte that is changed loses its entry and makes no othe
     for (const std::uint32_t count : {5u, 6u}) {
         const Memory bench;
         const std::string whole = states_of(bench, count).back();
-        std::size_t wrong = 0, lost = 0;
+        std::size_t wrong = 0, lost = 0, damaged = 0;
         for (std::size_t at = 0; at < whole.size(); ++at)
             for (const int change : {0x01, 0x80, 0xff}) {
                 std::string changed = whole;
@@ -153,10 +157,12 @@ TEST_CASE("journal 1: any byte that is changed loses its entry and makes no othe
                 bench.put(changed);
                 const std::optional<JournalEntry> read = bench.read();
                 lost += read == entry_of(count - 2);
+                damaged += has_damage(bench.path);
                 wrong += read != entry_of(count - 1) && read != entry_of(count - 2);
             }
         CHECK(wrong == 0);
         CHECK(lost == 3 * 88);
+        CHECK(damaged == 2 * 3 * 88);
     }
 }
 

@@ -221,6 +221,34 @@ TEST_CASE("resumption 2: no journal, or another file, is refused") {
     CHECK(journal_path(elsewhere, "/home/a/part.lyr") == "/var/lib/lyr/part.lyr.journal");
 }
 
+TEST_CASE("resumption 2: that the latest entry was lost was passed over in silence") {
+    const config::Printer printer = config::generic_printer();
+    const std::string file = write_print("resume_lost", {draw_square, draw_arcs});
+    {
+        Result<Journal> journal = Journal::open(journal_path(printer, file));
+        REQUIRE(journal.ok());
+        JournalEntry entry;
+        entry.file = *identity_of(file);
+        entry.printer = identity_of(printer);
+        entry.layer = 1;
+        REQUIRE(journal->write(entry).ok());
+        entry.layer = 2;
+        REQUIRE(journal->write(entry).ok());
+    }
+    CHECK(find_resumption(printer, file)->first_layer == 1);
+    CHECK(lost_entry(printer, file).empty());
+    {
+        // The second one is in front.
+        std::fstream torn(journal_path(printer, file), std::ios::in | std::ios::out);
+        torn.seekp(60) << "torn";
+    }
+    CHECK(find_resumption(printer, file)->first_layer == 0);
+    const Diagnostics lost = lost_entry(printer, file);
+    REQUIRE(lost.size() == 1);
+    CHECK(lost[0].severity == Severity::warning);
+    CHECK(to_string(lost[0]).find(".journal: warning: one of its two") != std::string::npos);
+}
+
 TEST_CASE("resumption 2: a print was resumed with the file of any other printer") {
     const config::Printer printer = config::generic_printer();
     const std::string file = write_print("resume_printer", {draw_square, draw_arcs});
