@@ -5,7 +5,6 @@
 #include "target/run/print.h"
 
 #include <cmath>
-#include <cstdio>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -15,12 +14,12 @@
 #include "base/text.h"
 #include "target/gpio/gpiod_chip.h"
 #include "target/gpio/gpiod_inputs.h"
-#include "target/run/demands.h"
 #include "target/run/event_flow.h"
 #include "target/run/event_stream.h"
 #include "target/run/executor.h"
 #include "target/run/life.h"
 #include "target/run/opening.h"
+#include "target/run/print_preparation.h"
 #include "target/run/real_time.h"
 #include "target/run/stop_signals.h"
 #include "target/run/watchdog.h"
@@ -120,14 +119,6 @@ std::string status_text(const PrintStatus& status) {
            formatted(", layer %u of %u", status.layer, status.layers);
 }
 
-// What is known and decided before a line is touched.
-struct Prepared {
-    PrintFile file;
-    Inspection inspection;
-    Diagnostics notes;
-    PrintJournal journal;
-};
-
 // What the first thread looks after.
 struct Watched {
     const StopSignals& signals;
@@ -165,14 +156,6 @@ Diagnostic stopped_before(const Watched& watched) {
     return ended;
 }
 
-// Nothing has moved yet.
-Status begin_journals(const PrintJob& job, PrintJournal& journal) {
-    if (job.forgets_others)
-        if (Status forgotten = forget_others(job.printer, job.journal); !forgotten)
-            return forgotten;
-    return begin_journal(journal, job.resumption);
-}
-
 // What is to be done before the path, and whether that may begin.
 Before open(const Watched& watched, const PrintJob& job, Prepared& prepared, gpio::GpioChip& chip,
             gpio::Clock& clock) {
@@ -204,6 +187,16 @@ void keep_height(const Resumption& resumption, double risen_mm, bool is_cancelle
     entry.place_um.reset();
     // What went wrong before is the message.
     (void)journal.write(entry);
+}
+
+// A print whose path does not begin.
+Diagnostic left_unbegun(const PrintJob& job, PrintJournal& journal, const Before& opened,
+                        gpio::GpioChip& chip, Life& life) {
+    (void)chip.release();
+    if (job.resumption && journal.journal)
+        keep_height(*job.resumption, opened.risen_mm, life.is_cancelled(), *journal.journal);
+    life.end(opened.status, false);
+    return opened.status.error();
 }
 
 // Until the real-time thread has ended.
@@ -249,33 +242,6 @@ Diagnostic derailed(Diagnostic error) {
     if (error.message.find("position is lost") == std::string::npos)
         error.message += "; the printer has stopped, and its position is lost";
     return error;
-}
-
-bool can_resume(const PrintJob& job) {
-    return (job.control && job.is_reachable) || job.printer.inputs[config::input_pause];
-}
-
-Status prepare_journals(const PrintJob& job, Prepared& prepared) {
-    if (job.journal.empty()) return Done{};
-    if (job.forgets_others) note_others(job.printer, job.journal, prepared.notes);
-    return open_journal(job.printer, job.file, job.journal, prepared.journal, prepared.notes);
-}
-
-Result<Prepared> prepare(const PrintJob& job) {
-    if (const Status has = check_cpu(job.printer.timing.cpu); !has) return has.error();
-    Result<PrintFile> file = PrintFile::open(job.file);
-    if (!file) return file.error();
-    Result<Inspection> inspection = inspect(*file, job.printer);
-    if (!inspection) return inspection.error();
-    Prepared prepared{std::move(*file), std::move(*inspection), {}, {}};
-    const Status possible = check_demands(prepared.inspection, job.printer, job.no_heat,
-                                          prepared.notes, can_resume(job));
-    if (!possible) return possible.error();
-    if (const Status opened = prepare_journals(job, prepared); !opened) return opened.error();
-    if (const Status same = prepared.file.check(); !same) return same.error();
-    lock_memory(prepared.notes);
-    try_precedence(job.printer.timing.cpu, prepared.notes);
-    return prepared;
 }
 
 // The heaters' thread, from construction to the end of the print.
@@ -400,12 +366,7 @@ Result<PrintReport> run(const PrintJob& job, Prepared& prepared, gpio::GpioChip&
     if (const Before opened = open(watched, job, prepared, chip, clock); !opened.status) {
         shared.finished.store(true);
         tending.join();
-        (void)chip.release();
-        if (job.resumption && prepared.journal.journal)
-            keep_height(*job.resumption, opened.risen_mm, life.is_cancelled(),
-                        *prepared.journal.journal);
-        life.end(opened.status, false);
-        return opened.status.error();
+        return left_unbegun(job, prepared.journal, opened, chip, life);
     }
     if (buttons)
         life.lacks_filament = [buttons] { return buttons->is_active(config::input_filament); };
@@ -479,34 +440,6 @@ Result<PrintReport> print(const PrintJob& job) {
         around.watchdog.emplace(std::move(*watchdog));
     }
     return run(job, *prepared, **chip, clock, std::move(around));
-}
-
-std::string text_of(const PrintReport& report) {
-    char line[200];
-    std::snprintf(
-        line, sizeof line,
-        "  printed in %.3f s, %.3f s longer than planned\n  %llu writes, the latest %.3f us "
-        "late\n",
-        report.planned_s + report.stretched_s, report.stretched_s,
-        static_cast<unsigned long long>(report.writes),
-        static_cast<double>(report.worst_late_ns) / ns_per_us);
-    std::string text = line;
-    if (report.cpu) text += formatted("  all of them on processor %u\n", *report.cpu);
-    if (report.waited_s > 0) {
-        std::snprintf(line, sizeof line, "  waited %.1f s for temperatures\n", report.waited_s);
-        text += line;
-    }
-    if (report.paused_s > 0) {
-        std::snprintf(line, sizeof line, "  paused for %.1f s\n", report.paused_s);
-        text += line;
-    }
-    for (std::size_t i = 0; i < report.lateness.size(); ++i) {
-        if (!report.lateness[i]) continue;
-        std::snprintf(line, sizeof line, "  waits less than %9llu us late: %llu\n", 1ULL << i,
-                      static_cast<unsigned long long>(report.lateness[i]));
-        text += line;
-    }
-    return text;
 }
 
 }  // namespace lyr::run

@@ -1,4 +1,4 @@
-// What a simulation found, for people and for programs.
+// What a simulation found, for people and for programs, and what a print did.
 
 #include <algorithm>
 #include <array>
@@ -7,6 +7,7 @@
 #include "base/constants.h"
 #include "base/text.h"
 #include "target/motion/time_walk.h"
+#include "target/run/print.h"
 #include "target/run/simulate.h"
 
 namespace lyr::run {
@@ -153,7 +154,7 @@ bool SimulationReport::within_limits() const {
 }
 
 std::string text_of(const SimulationReport& report) {
-    const PathTotals& totals = report.inspection.totals;
+    const PathTotals& totals = report.totals;
     std::string text;
     text += report.file + " on printer \"" + report.printer.name + "\", simulated\n";
     text += formatted("  layers       %u, %llu motions\n", totals.layers,
@@ -169,7 +170,7 @@ std::string text_of(const SimulationReport& report) {
         text += ", and " + duration_text(report.slowed_s) + " more at the lower speed asked for";
     text +=
         formatted("\n  extruded     %.3f mm with %.3f mm of %.2f mm filament\n", totals.extruded_mm,
-                  totals.filament_mm, report.inspection.filament_diameter_mm);
+                  totals.filament_mm, report.filament_diameter_mm);
     text += formatted("  travelled    %.3f mm\n", totals.travelled_mm);
     append_heat(text, report);
     append_axes(text, report);
@@ -198,7 +199,7 @@ std::string text_of(const SimulationReport& report) {
 }
 
 std::string json_of(const SimulationReport& report) {
-    const PathTotals& totals = report.inspection.totals;
+    const PathTotals& totals = report.totals;
     std::string text;
     append_json(text, "{\"file\":", report.file);
     append_json(text, ",\"printer\":", report.printer.name);
@@ -227,6 +228,23 @@ std::string json_of(const SimulationReport& report) {
     for (const Diagnostic& note : report.notes)
         append_json(text, &note == &report.notes.front() ? "" : ",", note.message);
     text += "]}\n";
+    return text;
+}
+
+std::string text_of(const PrintReport& report) {
+    std::string text = formatted(
+        "  printed in %.3f s, %.3f s longer than planned\n  %llu writes, the latest %.3f us late\n",
+        report.planned_s + report.stretched_s, report.stretched_s,
+        static_cast<unsigned long long>(report.writes),
+        static_cast<double>(report.worst_late_ns) / ns_per_us);
+    if (report.cpu) text += formatted("  all of them on processor %u\n", *report.cpu);
+    if (report.waited_s > 0)
+        text += formatted("  waited %.1f s for temperatures\n", report.waited_s);
+    if (report.paused_s > 0) text += formatted("  paused for %.1f s\n", report.paused_s);
+    for (std::size_t i = 0; i < report.lateness.size(); ++i)
+        if (report.lateness[i])
+            text += formatted("  waits less than %9llu us late: %llu\n", 1ULL << i,
+                              static_cast<unsigned long long>(report.lateness[i]));
     return text;
 }
 

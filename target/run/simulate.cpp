@@ -228,7 +228,8 @@ SimulationReport Simulation::report() const {
     SimulationReport report;
     report.file = job_.file;
     report.printer = job_.printer;
-    report.inspection = inspection_;
+    report.totals = inspection_.totals;
+    report.filament_diameter_mm = inspection_.filament_diameter_mm;
     report.print_time_s = print_time_s_;
     report.delayed_ns = shift_ns_ - EventStream::driver_wake_ns;
     for (std::size_t i = 0; i < report.pulses.size(); ++i)

@@ -77,7 +77,8 @@ struct HeatFigures {
 struct SimulationReport {
     std::string file;
     config::Printer printer;
-    Inspection inspection;
+    PathTotals totals;
+    double filament_diameter_mm = 0;
     double print_time_s = 0;
     std::int64_t delayed_ns = 0;  // of it, because drivers need time between edges
     std::array<PulseFigures, config::axis_count> pulses;

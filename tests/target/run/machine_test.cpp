@@ -77,7 +77,7 @@ void check_end(const SimulationReport& report, const std::string& file) {
     const config::Printer& printer = report.printer;
     Result<format::Reader> reader = format::Reader::open(file);
     REQUIRE(reader.ok());
-    FilePath path(std::move(*reader), printer.start_mm, report.inspection.filament_diameter_mm);
+    FilePath path(std::move(*reader), printer.start_mm, report.filament_diameter_mm);
     PathCurve curve;
     while (*path.next(curve)) continue;
     const auto start = carried_mm(printer, 0, 0, 0);

@@ -91,7 +91,7 @@ TEST_CASE("simulate 2, 3: every kind of motion stays within half a microstep, tu
                 const SimulationReport report = report_of(file);
                 check_half_step(report);
                 CHECK(report.positions == expected_end(file, report.printer));
-                CHECK(report.inspection.totals.layers == 2);
+                CHECK(report.totals.layers == 2);
             }
 }
 
@@ -109,7 +109,7 @@ TEST_CASE("simulate 2, 3: on coarse and fine machines, and from another start" *
 
 TEST_CASE("simulate: the report's figures are those of the drawing") {
     const SimulationReport report = report_of(write_print("figures", {draw_square}));
-    const PathTotals& totals = report.inspection.totals;
+    const PathTotals& totals = report.totals;
     CHECK(totals.extruded_mm == doctest::Approx(80));
     const double area_mm2 = (0.45 - 0.2) * 0.2 + std::numbers::pi / 4 * 0.2 * 0.2;
     const double filament_mm2 = std::numbers::pi / 4 * 1.75 * 1.75;
