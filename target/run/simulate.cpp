@@ -13,6 +13,7 @@
 #include "target/run/demands.h"
 #include "target/run/executor.h"
 #include "target/run/heating.h"
+#include "target/run/inspect.h"
 #include "target/run/life.h"
 #include "target/run/simulated_lines.h"
 #include "target/run/stream_beside.h"

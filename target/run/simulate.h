@@ -26,7 +26,7 @@
 #include <string>
 
 #include "target/config/printer.h"
-#include "target/run/inspect.h"
+#include "target/run/file_path.h"
 #include "target/run/path_check.h"
 #include "target/run/print_control.h"
 #include "target/run/pulse_decoder.h"

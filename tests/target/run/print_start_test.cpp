@@ -12,6 +12,7 @@
 #include "target/gpio/mock_chip.h"
 #include "target/gpio/mock_inputs.h"
 #include "target/run/cut_off.h"
+#include "target/run/inspect.h"
 #include "target/run/patient_printer.h"
 #include "target/run/print.h"
 #include "target/run/print_files.h"

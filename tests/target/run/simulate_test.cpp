@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "target/gpio/wave_file.h"
+#include "target/run/inspect.h"
 #include "target/run/print_files.h"
 
 using namespace lyr;
