@@ -2,10 +2,8 @@
 // tick.
 
 #include <doctest/doctest.h>
-#include <sys/resource.h>
 
-#include <csignal>
-
+#include "target/run/full_disk.h"
 #include "target/run/resumed_life.h"
 
 using namespace lyr;
@@ -27,25 +25,6 @@ void give_tool(Resumed& print) {
     print.printer.heaters[config::heater_tool] =
         config::generic_printer().heaters[config::heater_tool];
 }
-
-// While it lives no file of this process can be written.
-class FullDisk {
-public:
-    FullDisk() {
-        was_told_ = std::signal(SIGXFSZ, SIG_IGN);
-        REQUIRE(::getrlimit(RLIMIT_FSIZE, &before_) == 0);
-        const rlimit none{0, before_.rlim_max};
-        REQUIRE(::setrlimit(RLIMIT_FSIZE, &none) == 0);
-    }
-    ~FullDisk() {
-        ::setrlimit(RLIMIT_FSIZE, &before_);
-        std::signal(SIGXFSZ, was_told_);
-    }
-
-private:
-    rlimit before_{};
-    void (*was_told_)(int) = nullptr;
-};
 
 }  // namespace
 

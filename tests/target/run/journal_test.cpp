@@ -13,6 +13,7 @@
 #include <fstream>
 
 #include "scratch.h"
+#include "target/run/full_disk.h"
 
 using namespace lyr;
 using namespace lyr::run;
@@ -238,13 +239,15 @@ TEST_CASE("journal: two printers that printed the same file wrote into one journ
 }
 
 TEST_CASE("journal 2, 3: a full disk is told once, from either side") {
-    // What is written there finds no room.
-    Result<Journal> full = Journal::open("/dev/full");
+    const Bench bench;
+    Result<Journal> full = Journal::open(bench.path);
     REQUIRE(full.ok());
+    const tests::FullDisk disk;
     const Status written = full->write(entry_of(1));
     REQUIRE_FALSE(written.ok());
     CHECK(written.error().status == ExitStatus::output);
-    CHECK(written.error().message.find("No space left") != std::string::npos);
+    CHECK(written.error().message.find("cannot write the journal: File too large") !=
+          std::string::npos);
     JournalWriter writer(std::move(*full));
     std::optional<Diagnostic> told;
     for (std::uint32_t i = 0; i < 200 && !told; ++i) {
