@@ -57,7 +57,8 @@ endfunction()
 # Headers are included by their path from the root ("kernel/brep/model.h"); each room publishes only
 # its own folder, through a link in the build tree. SMALL rooms are what a board's program does now and then (options,
 # settings, reports): they are built for size, but for those of their sources that are FAST, which need no room between
-# their functions and jumps to be so: that would be a twentieth of them. BARE rooms, and PURE sources of others, hold
+# their functions and jumps to be so: that would be a twentieth of them. Nor are functions of the standard library cloned for
+# what one source asks of them, since each would have its own of what is one for all. BARE rooms, and PURE sources of others, hold
 # nothing but memory: nothing of this project throws, and when there is no memory the program ends with its message and
 # cleans up no more of it on the way; the code for that would be a tenth of them.
 function(lyr_room name)
@@ -72,9 +73,9 @@ function(lyr_room name)
     target_link_libraries(${name} PUBLIC ${ROOM_LINK} PRIVATE lyr_flags ${ROOM_PRIVATE})
     target_include_directories(${name} PUBLIC ${published})
     if(ROOM_SMALL)
-      target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-Os>)
+      target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-Os;-fno-ipa-sra>)
       set_property(SOURCE ${ROOM_FAST} APPEND PROPERTY COMPILE_OPTIONS
-        $<$<CONFIG:Release>:-O2;-fno-align-jumps;-fno-align-functions>)
+        $<$<CONFIG:Release>:-O2;-fipa-sra;-fno-align-jumps;-fno-align-functions>)
     endif()
     set(bare $<$<CONFIG:Release>:-fno-exceptions;-funwind-tables>)
     if(ROOM_BARE)
