@@ -34,6 +34,20 @@ Diagnostic refused(const std::string& what, int error, const std::string& remedy
             {}};
 }
 
+// What a print maps once its threads run: 64 MiB of addresses for the heap of each, most of them never used.
+constexpr std::size_t room_bytes = std::size_t{1} << 29;
+
+// Under a limit on locked memory whatever is mapped counts, from now on, whether it is ever touched or not: a limit that
+// lets the program in may not let its threads start.
+bool has_room() {
+    void* const room =
+        ::mmap(nullptr, room_bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    // Where the limit is another one, of addresses, it is no less without locks.
+    if (room == MAP_FAILED) return errno != EAGAIN;
+    ::munmap(room, room_bytes);
+    return true;
+}
+
 // What the kernel answers.
 int stay_on(unsigned cpu) {
     if (cpu >= CPU_SETSIZE) return EINVAL;
@@ -56,9 +70,14 @@ void keep_stacks_small() {
 void lock_memory(Diagnostics& warnings) {
     // Each page once it is touched: all of the libraries' and of every thread's 8 MB of stack would be several times what
     // a print needs. What the real-time thread touches, it has touched before the head moves.
-    if (::mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) != 0)
+    int error = ::mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0 ? 0 : errno;
+    if (error == 0 && !has_room()) {
+        ::munlockall();
+        error = ENOMEM;
+    }
+    if (error != 0)
         warnings.push_back(
-            refused("locking memory", errno, "grant CAP_IPC_LOCK or raise `ulimit -l`"));
+            refused("locking memory", error, "grant CAP_IPC_LOCK or set `ulimit -l` to unlimited"));
 }
 
 void take_precedence(std::optional<unsigned> cpu, Diagnostics& warnings) {

@@ -16,7 +16,7 @@ namespace lyr::run {
 void keep_stacks_small();
 
 // Keeps the memory of the whole process, present and future, in place: a page fault would cost
-// milliseconds.
+// milliseconds. A limit that is too low for a print's threads counts as refused.
 void lock_memory(Diagnostics& warnings);
 
 // Puts the calling thread before all ordinary ones (SCHED_FIFO), and on that processor alone; none: on any.

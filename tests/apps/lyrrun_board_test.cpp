@@ -107,3 +107,20 @@ TEST_CASE("lyrrun: a print takes at most 8 MB of memory, however long it is" *
     CHECK(most_kb > 1'000);
     CHECK(most_kb < 8'000);
 }
+
+TEST_CASE("lyrrun: a limit on locked memory that let the program in let no thread start") {
+    const Folder folder("locked");
+    fs::copy_file(write_print("locked", {draw_small}), folder / "a.lyr");
+    constexpr int may_not = 77;
+    const Ended printed = folder.run(
+        "without=\n"
+        "if [ $(id -u) = 0 ]; then without='setpriv --bounding-set -ipc_lock'; fi\n"
+        "$without true || exit 77\n"
+        "for limit in 7000 7500 8000 8192; do\n"
+        "    (ulimit -l $limit && $without lyrrun a.lyr --dry-run --no-heat) || exit\n"
+        "done");
+    if (printed.status == may_not)
+        MESSAGE("not run: nobody may give up a privilege here");
+    else
+        CHECK_MESSAGE(printed.status == 0, printed.err);
+}
