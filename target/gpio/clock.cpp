@@ -53,6 +53,7 @@ std::int64_t TracingClock::wait_until_ns(std::int64_t time_ns) {
     ++histogram_[std::min<std::size_t>(static_cast<std::size_t>(std::bit_width(late_us)),
                                        buckets - 1)];
     worst_ns_ = std::max(worst_ns_, late_ns);
+    waits_.fetch_add(1, std::memory_order_relaxed);
     return now;
 }
 

@@ -11,11 +11,12 @@
 //  function
 //     says; a wait for the past takes no time.
 //  5. TracingClock passes everything on to another clock and keeps a histogram of how late waits
-//  ended.
+//  ended. Any thread may look at the number of waits(), which tells whether its owner goes on.
 
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <functional>
 
@@ -66,11 +67,13 @@ public:
 
     const std::array<std::uint64_t, buckets>& histogram() const { return histogram_; }
     std::int64_t worst_ns() const { return worst_ns_; }
+    std::uint32_t waits() const { return waits_.load(std::memory_order_relaxed); }
 
 private:
     Clock& inner_;
     std::array<std::uint64_t, buckets> histogram_{};
     std::int64_t worst_ns_ = 0;
+    std::atomic<std::uint32_t> waits_{0};
 };
 
 }  // namespace lyr::gpio

@@ -1,6 +1,5 @@
 #include "target/run/event_flow.h"
 
-#include <chrono>
 #include <thread>
 
 namespace lyr::run {
@@ -8,6 +7,8 @@ namespace {
 
 // How long a full ring is left alone; far below what it holds.
 constexpr std::chrono::microseconds full_nap{2'000};
+// Of the real-time thread, which has nothing to write.
+constexpr std::chrono::microseconds empty_nap{50};
 
 }  // namespace
 
@@ -26,7 +27,8 @@ void EventFlow::close() {
 }
 
 void EventFlow::nap() {
-    std::this_thread::sleep_for(std::chrono::microseconds(nap_us));
+    naps_.fetch_add(1, std::memory_order_relaxed);
+    std::this_thread::sleep_for(empty_nap);
 }
 
 Diagnostic EventFlow::dry_error() {

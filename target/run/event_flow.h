@@ -7,12 +7,14 @@
 //     Events come out a few at a time, so that there is room again early.
 //  3. A ring that has run dry is waited for, and what comes late by that is late as any other event (executor.h, 2
 //     and 4). Where a stop was asked for, drain() ends after a tenth of a second of that, and at once if it was
-//     twice; in any case after some seconds, and ran_dry() is true then: heat must not stay on a head that stands.
-//  4. In drain() nothing is allocated or locked.
+//     twice; in any case after `most_dry`, and ran_dry() is true then: heat must not stay on a head that stands.
+//  4. In drain() nothing is allocated or locked. naps() grows as long as it waits for events.
 
 #pragma once
 
 #include <algorithm>
+#include <chrono>
+#include <utility>
 
 #include "target/run/event_ring.h"
 #include "target/run/executor.h"
@@ -25,13 +27,10 @@ public:
     // four axes at 20,000 steps/s each.
     static constexpr std::size_t ring_events = std::size_t{1} << 16;
 
-    // Of the real-time thread, which has nothing to write.
-    static constexpr int nap_us = 50;
-
-    // `finished`: the real-time thread has ended. After so many naps the ring has run dry.
+    // `finished`: the real-time thread has ended.
     EventFlow(const StopRequests& stop_requests, const std::atomic<bool>& finished,
-              int most_dry_naps = 5'000'000 / nap_us)
-        : stop_requests_(stop_requests), finished_(finished), most_dry_naps_(most_dry_naps) {}
+              std::chrono::milliseconds most_dry = std::chrono::seconds(5))
+        : stop_requests_(stop_requests), finished_(finished), most_dry_(most_dry) {}
 
     void put(std::span<const LineEvent> events);
     // There are no more.
@@ -41,18 +40,21 @@ public:
     template <typename Execute>
     Result<bool> drain(const Execute& execute) {
         constexpr std::size_t batch = 64;
-        for (int naps = 0; !filled_.load() && !stops(); nap())
-            if (++naps > most_dry_naps_) return dry();
-        for (int naps = 0; !ring_.ended();) {
+        Clock::time_point dry_since = Clock::now();
+        for (; !filled_.load() && !stops(); nap())
+            if (Clock::now() - dry_since > most_dry_) return dry();
+        for (bool is_dry = false; !ring_.ended();) {
             std::span<const LineEvent> events = ring_.view();
             if (events.empty()) {
-                ++naps;
-                if (stops() && (naps > most_naps || stop_requests_.load() > 1)) return false;
-                if (naps > most_dry_naps_) return dry();
+                const Clock::time_point now = Clock::now();
+                if (!std::exchange(is_dry, true)) dry_since = now;
+                const bool is_left = now - dry_since > stop_wait || stop_requests_.load() > 1;
+                if (stops() && is_left) return false;
+                if (now - dry_since > most_dry_) return dry();
                 nap();
                 continue;
             }
-            naps = 0;
+            is_dry = false;
             events = events.first(std::min(batch, events.size()));
             Result<bool> executed = execute(events);
             if (!executed || !*executed) return executed;
@@ -61,23 +63,27 @@ public:
         return true;
     }
 
+    std::uint32_t naps() const { return naps_.load(std::memory_order_relaxed); }
     // After drain().
     bool ran_dry() const { return ran_dry_; }
     static Diagnostic dry_error();
 
 private:
+    using Clock = std::chrono::steady_clock;
+    static constexpr std::chrono::milliseconds stop_wait{100};
+
     bool dry() {
         ran_dry_ = true;
         return false;
     }
     bool stops() const { return stop_requests_.load() != 0; }
-    static constexpr int most_naps = 100'000 / nap_us;
-    static void nap();
+    void nap();
 
     const StopRequests& stop_requests_;
     const std::atomic<bool>& finished_;
-    const int most_dry_naps_;
+    const std::chrono::milliseconds most_dry_;
     bool ran_dry_ = false;
+    std::atomic<std::uint32_t> naps_{0};
     EventRing ring_{ring_events};
     std::atomic<bool> filled_{false};  // the ring is full, or all there will be is in it
 };

@@ -426,10 +426,13 @@ motion::Point Life::head() const {
     return head;
 }
 
-void Life::begin_with(const Resumption& resumption, bool is_lifted) {
+void Life::heat_for(const Resumption& resumption) {
     for (const format::HeaterTarget& target : resumption.state.temperatures)
         if (const auto heater = heater_number(target.heater))
             desk_.set_target(*heater, target.target_c);
+}
+
+void Life::begin_with(const Resumption& resumption, bool is_lifted) {
     layer_ = resumption.first_layer + 1;
     parked_at_ = {printer_.start_mm[0], printer_.start_mm[1], printer_.start_mm[2]};
     if (!is_lifted) parked_at_.z = resumption.stopped_z_mm;

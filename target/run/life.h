@@ -76,8 +76,12 @@ public:
     void keep_journal(JournalWriter* journal, const FileIdentity& identity);
     // Before the first tick; the printer's start is where the head is after the lift.
     void begin_with(const Resumption& resumption, bool is_lifted);
+    // Asks for the heat that it begins with.
+    void heat_for(const Resumption& resumption);
 
     void tick(double now_s);
+    // What is wrong, as status().message from the next tick on.
+    void tell(const std::string& why) { message_ = why; }
     // A button or sensor of the printer; of config's InputNumber.
     void press(std::size_t input);
     // The motion has ended before the path has, and where the head is is known.

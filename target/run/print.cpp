@@ -7,7 +7,6 @@
 #include <cmath>
 #include <mutex>
 #include <optional>
-#include <thread>
 #include <utility>
 
 #include "base/constants.h"
@@ -23,6 +22,7 @@
 #include "target/run/real_time.h"
 #include "target/run/stop_signals.h"
 #include "target/run/watchdog.h"
+#include "target/run/worker.h"
 
 namespace lyr::run {
 namespace {
@@ -49,11 +49,17 @@ struct Shared {
     OrderQueue orders;
     Marks marks;
 
-    // The first that fires brings the head to rest.
+    // The print's own reasons to end: the head comes to rest, and only somebody's second request stops it at once.
+    void come_to_rest() {
+        int none = 0;
+        stop_requests.compare_exchange_strong(none, 1);
+    }
+    // The first that fires does.
     void tripped(const thermal::Trip& trip) {
         const std::lock_guard lock(trip_mutex_);
-        if (!trip_) ++stop_requests;
-        if (!trip_) trip_ = trip;
+        if (trip_) return;
+        trip_ = trip;
+        come_to_rest();
     }
     std::optional<thermal::Trip> trip() {
         const std::lock_guard lock(trip_mutex_);
@@ -77,7 +83,7 @@ Status fill(const PrintFile& file, EventStream& stream, Shared& shared) {
             status = next.error();
             events.clear();
             // What the ring still holds is enough to brake on.
-            ++shared.stop_requests;
+            shared.come_to_rest();
         }
         more = next.ok() && *next;
         if (next && !more) {
@@ -135,10 +141,32 @@ void look_after(const Watched& watched, double now_s) {
     if (heating)
         if (const auto silent = heating->stage->expire(now_s)) shared.tripped(*silent);
     if (buttons) press(*buttons, gpio::MonotonicClock().now_ns(), life, shared);
-    if (heating && shared.trip()) (void)heating->stage->all_off();
+    // A head that comes to rest may take its time.
+    if (heating && shared.stop_requests.load() > 0) (void)heating->stage->all_off();
+    if (const auto trip = shared.trip()) life.tell(trip->message);
+}
+
+void feed(const Watched& watched, double now_s) {
+    auto& [signals, shared, life, heating, buttons, supervision] = watched;
     supervision.feed(now_s, heating ? std::optional(shared.heat_ticks.load()) : std::nullopt,
                      status_text(shared.control.status()));
 }
+
+// A thread that says by a number that it goes on.
+class Heartbeat {
+public:
+    // True: for a while it has not.
+    bool is_missed(std::uint32_t beats, double now_s) {
+        if (!std::exchange(has_begun_, true) || beats != beats_) since_s_ = now_s;
+        beats_ = beats;
+        return now_s - since_s_ > thermal::silent_s;
+    }
+
+private:
+    bool has_begun_ = false;
+    std::uint32_t beats_ = 0;
+    double since_s_ = 0;
+};
 
 // Why it was stopped before its path.
 Diagnostic stopped_before(const Watched& watched) {
@@ -168,7 +196,10 @@ Before open(const Watched& watched, const PrintJob& job, Prepared& prepared, gpi
     status.estimated_s = inspection.header.summary.estimated_time_s;
     status.time_s = watched.life.time_s();
     Opening opening(shared.control, shared.desk, watched.signals, std::move(status),
-                    [&](double now_s) { look_after(watched, now_s); });
+                    [&](double now_s) {
+                        look_after(watched, now_s);
+                        feed(watched, now_s);
+                    });
     const Before before = job.before(chip, clock, [&] { return opening.asked(); });
     (void)opening.asked();
     if (shared.stop_requests.load() == 0) return before;
@@ -200,15 +231,23 @@ Diagnostic left_unbegun(const PrintJob& job, PrintJournal& journal, const Before
 }
 
 // Until the real-time thread has ended.
-void watch(const Watched& watched, const PrintJob& job, const Inspection& inspection) {
+void watch(const Watched& watched, const PrintJob& job, const Inspection& inspection,
+           const gpio::TracingClock& clock) {
     auto& [signals, shared, life, heating, buttons, supervision] = watched;
     IdleTending idle(shared);
+    Heartbeat heartbeat;
     double next_progress_s = heat_time_s() + progress_s;
     while (!shared.finished.load()) {
         if (signals.wait_ms(signal_wait_ms)) ++shared.stop_requests;
         const double now_s = heat_time_s();
         if (!heating) idle.tick(now_s);
+        const bool hangs = heartbeat.is_missed(clock.waits() + shared.flow->naps(), now_s);
+        if (hangs)
+            shared.tripped({thermal::GuardKind::silent,
+                            "no step has been written for more than 3 s: a write to the lines "
+                            "hangs; all heaters are off"});
         look_after(watched, now_s);
+        if (!hangs) feed(watched, now_s);
         life.tick(now_s);
         if (!job.progress || now_s < next_progress_s) continue;
         next_progress_s = now_s + progress_s;
@@ -237,9 +276,10 @@ Diagnostic dried(const Life& life) {
     return error;
 }
 
-// A line that cannot be written, or an edge that came too late.
-Diagnostic derailed(Diagnostic error) {
-    if (error.message.find("position is lost") == std::string::npos)
+// A line that cannot be written, an edge that came too late, or motors that were stopped at once.
+Diagnostic with_position(Diagnostic error, bool is_known) {
+    // Some say it themselves.
+    if (!is_known && error.message.find(" is lost") == std::string::npos)
         error.message += "; the printer has stopped, and its position is lost";
     return error;
 }
@@ -250,19 +290,17 @@ public:
     Tending(Heating* heating, Shared& shared) {
         if (!heating) return;
         attendant_.emplace(shared.orders, shared.marks, heating->control.get(), &shared.desk);
-        thread_ = std::thread([this, heating, &shared] {
+        worker_.start([this, heating, &shared] {
             tend(*heating->control, *attendant_, shared.finished, shared.heat_ticks,
                  [&](const thermal::Trip& trip) { shared.tripped(trip); });
             (void)heating->stage->release();
         });
     }
-    void join() {
-        if (thread_.joinable()) thread_.join();
-    }
+    void join(const StopSignals& signals) { worker_.join(signals); }
 
 private:
     std::optional<HeatAttendant> attendant_;
-    std::thread thread_;
+    Worker worker_;
 };
 
 struct Outcome {
@@ -270,12 +308,13 @@ struct Outcome {
     Result<bool> executed = true;
 };
 
-Status status_of(Shared& shared, const Life& life, const Outcome& outcome) {
-    if (const auto trip = shared.trip()) return diagnostic_of(*trip);
-    if (!outcome.executed) return derailed(outcome.executed.error());
+Status status_of(Shared& shared, const Life& life, const Status& planned,
+                 const Result<bool>& executed, bool is_known) {
+    if (const auto trip = shared.trip()) return with_position(diagnostic_of(*trip), is_known);
+    if (!executed) return with_position(executed.error(), false);
     if (shared.flow->ran_dry()) return dried(life);
-    if (!outcome.planned) return outcome.planned.error();
-    if (!*outcome.executed) return stopped(shared, life);
+    if (!planned) return with_position(planned.error(), is_known);
+    if (!*executed) return stopped(shared, life);
     return Done{};
 }
 
@@ -331,6 +370,12 @@ void drive(Running& running, gpio::GpioChip& chip) {
     shared.finished.store(true);
 }
 
+// Before the threads of a print are waited for, on whatever way that comes.
+struct Ending {
+    std::atomic<bool>& finished;
+    ~Ending() { finished.store(true); }
+};
+
 // What a print may have beside its lines.
 struct Around {
     Heating* heating = nullptr;
@@ -361,12 +406,15 @@ Result<PrintReport> run(const PrintJob& job, Prepared& prepared, gpio::GpioChip&
     if (job.begun) job.begun();
     // At once: the keeper of the heaters' lines expects to hear of them.
     Tending tending(heating, shared);
+    Worker planner, edges;
+    const Ending ending{shared.finished};
     Supervision supervision(std::move(around.watchdog));
     const Watched watched{signals, shared, life, heating, buttons, supervision};
     if (const Before opened = open(watched, job, prepared, chip, clock); !opened.status) {
         shared.finished.store(true);
-        tending.join();
-        return left_unbegun(job, prepared.journal, opened, chip, life);
+        const Diagnostic why = left_unbegun(job, prepared.journal, opened, chip, life);
+        tending.join(signals);
+        return why;
     }
     if (buttons)
         life.lacks_filament = [buttons] { return buttons->is_active(config::input_filament); };
@@ -374,22 +422,24 @@ Result<PrintReport> run(const PrintJob& job, Prepared& prepared, gpio::GpioChip&
     if (prepared.journal.journal) journal.emplace(std::move(*prepared.journal.journal));
     life.keep_journal(journal ? &*journal : nullptr, prepared.journal.file);
     shared.flow.emplace(shared.stop_requests, shared.finished);
-    std::thread planner([&] { running.outcome.planned = fill(prepared.file, *stream, shared); });
-    std::thread edges([&] { drive(running, chip); });
-    watch(watched, job, inspection);
-    edges.join();
-    tending.join();
-    // One that hangs is waited for when all is off and told.
-    if (!shared.flow->ran_dry()) planner.join();
-    const Status status = status_of(shared, life, running.outcome);
+    if (job.resumption) life.heat_for(*job.resumption);
+    planner.start([&] { running.outcome.planned = fill(prepared.file, *stream, shared); });
+    edges.start([&] { drive(running, chip); });
+    watch(watched, job, inspection, running.traced);
+    edges.join(signals);
+    if (heating) (void)heating->stage->all_off();
     const bool is_known = running.outcome.executed.ok() && shared.stop_requests < 2;
+    const Status planned = planner.ends_soon() ? running.outcome.planned : Done{};
+    const Status status = status_of(shared, life, planned, running.outcome.executed, is_known);
     if (journal && (status || life.is_cancelled()))
         journal->remove();
     else if (is_known)
         life.note_rest();
     if (journal) journal->finish();
     life.end(status, is_known);
-    if (planner.joinable()) planner.join();
+    // All is off and told: whoever hangs at a sensor or the file is waited for.
+    planner.join(signals);
+    tending.join(signals);
     if (!status) return status.error();
     if (life.journal_error()) report.warnings.push_back(*life.journal_error());
     report_on(running.executor, running.traced, report);

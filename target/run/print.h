@@ -10,8 +10,9 @@
 //     result.
 //  3. However the print ends (done, error, request), all lines are inactive and released before
 //     print() returns.
-//  4. The first SIGINT, SIGTERM or SIGHUP brings the head to rest on its path, a second one stops at
-//     once; both end with status stopped.
+//  4. The first SIGINT, SIGTERM or SIGHUP takes the heat away and brings the head to rest on its path, a second one stops
+//     at once; both end with status stopped. Where a sensor or the file hangs at the end, they end the program, which
+//     holds no line of a motor any more.
 //     A processor that timing.cpu names and this board lacks is an error before anything is held.
 //  5. The pulses are those of the simulation, in the same order, with at least the same gaps.
 //  6. Commands of `control` are served as life.h says, by this thread; it tells there what the print is, to its end.
@@ -21,7 +22,8 @@
 //     written, or is another printer's, is a warning, before anything moves and in the status. What is there of an
 //     earlier print on this printer is gone before anything moves, or, if this one resumes it, can be written; or else
 //     nothing moves (status output).
-//  8. The watchdog is fed by this thread as long as the heaters' thread ticks; the init system is told how it goes.
+//  8. The watchdog is fed by this thread as long as the heaters' thread ticks and the real-time one goes on; a write that
+//     hangs for silent_s takes the heat away as a guard does. The init system is told how it goes.
 //  9. Buttons and sensors act as life.h says; input lines that cannot be read take heat and motion away, as a guard does.
 // 10. Where the head is afterwards is known unless the message says that its position is lost.
 

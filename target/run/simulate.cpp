@@ -24,7 +24,7 @@ namespace {
 // Progress and stop are asked for after so many batches of events.
 constexpr std::uint64_t batches_between_questions = 64;
 
-// Where anybody may ask for more speed, so much is made at once, as in a print.
+// Where anybody may ask for more speed, so much is made at once: less than in a print, whose ring holds seconds.
 constexpr std::int64_t heeded_within_ns = 500'000'000;
 
 Diagnostic stopped() {
@@ -91,7 +91,10 @@ public:
         if (job.heat_watch)
             heat_.observe(
                 [this](double time_s) { job_.heat_watch(time_s, heat_.any_heater_on()); });
-        if (job.resumption) life_.begin_with(*job.resumption, false);
+        if (job.resumption) {
+            life_.begin_with(*job.resumption, false);
+            life_.heat_for(*job.resumption);
+        }
         if (is_lived()) clock_.on_tick = [this](double time_s) { live(time_s); };
     }
 

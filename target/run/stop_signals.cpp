@@ -29,6 +29,10 @@ StopSignals::~StopSignals() {
     pthread_sigmask(SIG_SETMASK, &before_, nullptr);
 }
 
+void StopSignals::let_strike() const {
+    pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);
+}
+
 bool StopSignals::wait_ms(int time_ms) const {
     constexpr int ms_per_s = 1'000;
     constexpr long ns_per_ms = 1'000'000;

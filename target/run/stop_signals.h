@@ -7,6 +7,7 @@
 //  2. wait_ms(t) returns true as soon as one of them arrives, and false after t milliseconds without;
 //     each arrival is told once.
 //  3. They may be nested: what the inner one was not asked for is left to the outer one.
+//  4. After let_strike() they end the program, if the calling thread waits for something.
 
 #pragma once
 
@@ -23,6 +24,7 @@ public:
     StopSignals& operator=(const StopSignals&) = delete;
 
     bool wait_ms(int time_ms) const;
+    void let_strike() const;
 
 private:
     sigset_t signals_;

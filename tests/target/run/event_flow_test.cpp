@@ -14,7 +14,7 @@ namespace {
 // Nothing is ever put there; the time for that is short.
 bool runs_dry_at_begin(const StopRequests& stop_requests) {
     const std::atomic<bool> finished{false};
-    EventFlow flow(stop_requests, finished, 20);
+    EventFlow flow(stop_requests, finished, std::chrono::milliseconds(1));
     const Result<bool> drained =
         flow.drain([](std::span<const LineEvent>) -> Result<bool> { return true; });
     REQUIRE(drained.ok());
@@ -28,8 +28,7 @@ TEST_CASE(
     "event flow 3: a planner that hung left the head where it was, and the heat on, for ever") {
     const StopRequests stop_requests{0};
     std::atomic<bool> finished{false};
-    constexpr int about_a_second = 10'000;
-    EventFlow flow(stop_requests, finished, about_a_second);
+    EventFlow flow(stop_requests, finished, std::chrono::seconds(1));
     std::vector<LineEvent> events(EventFlow::ring_events);
     for (std::size_t i = 0; i < events.size(); ++i)
         events[i].time_ns = static_cast<std::int64_t>(i);

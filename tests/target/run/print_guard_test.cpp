@@ -1,4 +1,5 @@
-// What of a print takes the heat away while the heaters' own thread cannot: print.h 8 and 9, on real threads.
+// What of a print takes the heat away while the heaters' own thread cannot, or the real-time one: print.h 2, 4, 8 and 9, on
+// real threads.
 
 #include <doctest/doctest.h>
 #include <sys/socket.h>
@@ -8,6 +9,7 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -55,20 +57,24 @@ private:
     int socket_ = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
 };
 
-// A hotend at 26 °C that is to reach 210. Its sensor hangs when it is told to, until the heater is off or that has taken
-// too long.
-struct HangingSensor {
+// A hotend at 26 °C that is to reach 210. Its sensor hangs when it is told to, or the lines of the motors do, until the
+// heater is off or that has taken too long.
+struct HangingBoard {
     config::Printer printer = config::generic_printer();
     gpio::MonotonicClock clock;
-    gpio::MockChip chip{8, clock, {}};
     std::atomic<gpio::LineMask> heat{0};
-    std::atomic<bool> hangs{false}, has_hung{false}, was_cut{false};
+    Heating heating;  // the motors' lines look at it to the end
+    gpio::MockChip chip{8, clock, [this](const gpio::LineWrite&) { wrote(); }};
+    std::atomic<bool> hangs{false}, write_hangs{false}, has_hung{false}, was_cut{false};
     double longest_s = 0;
+    bool outlasts_heat = false;
+    std::atomic<int> cold_writes{0};  // of the motors' lines, when all heat had been taken away
+    PrintControl control;
+    PrintStatus status_then;  // when it had hung
     Listener listener;
     std::atomic<int> fed_meanwhile{0};
-    Heating heating;
 
-    explicit HangingSensor(double longest) : longest_s(longest) {
+    explicit HangingBoard(double longest) : longest_s(longest) {
         printer.pulse.late_limit_ns = 10'000'000'000;
         printer.heaters[config::heater_bed].reset();
         std::vector<thermal::Output> outputs;
@@ -85,18 +91,27 @@ struct HangingSensor {
             std::make_unique<thermal::HeatControl>(std::move(ports), false, *heating.stage);
     }
 
+    void hang() {
+        has_hung = true;
+        (void)listener.fed();
+        const double from_s = heat_time_s();
+        while ((heat != 0 || outlasts_heat) && heat_time_s() - from_s < longest_s)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        was_cut = heat == 0;
+        std::this_thread::sleep_for(std::chrono::milliseconds(200));  // until that is told
+        fed_meanwhile = listener.fed();
+        status_then = control.status();
+    }
     double read() {
-        if (hangs && !has_hung) {
-            has_hung = true;
-            (void)listener.fed();
-            const double from_s = heat_time_s();
-            while (heat != 0 && heat_time_s() - from_s < longest_s)
-                std::this_thread::sleep_for(std::chrono::milliseconds(1));
-            was_cut = heat == 0;
-            fed_meanwhile = listener.fed();
-        }
+        if (hangs && !has_hung) hang();
         return 3'900;
     }
+    void wrote() {
+        if (write_hangs && !has_hung) hang();
+        cold_writes += heating.stage->latched();
+    }
+    // One that waits for nothing.
+    std::string cold_file() const { return write_print("print_guard_cold", {draw_square}); }
     std::string file() const {
         return write_print("print_guard", {draw_square}, {}, [](format::LayerState& state) {
             state.temperatures.push_back({{format::HeaterKind::tool, 0}, 210});
@@ -107,7 +122,7 @@ struct HangingSensor {
 }  // namespace
 
 TEST_CASE("print 8: heaters whose thread hangs go off after 3 s, and no watchdog is fed for it") {
-    HangingSensor board(5);
+    HangingBoard board(5);
     const ProgressSink watch = [&](const Progress&) { board.hangs = board.heat != 0; };
     const Result<PrintReport> report =
         print({board.file(), board.printer, false, watch}, board.chip, board.clock, &board.heating);
@@ -122,7 +137,7 @@ TEST_CASE("print 8: heaters whose thread hangs go off after 3 s, and no watchdog
 
 TEST_CASE("print 9: inputs that are lost take the heat away at once, whatever its thread does") {
     // Before the heaters would be silent.
-    HangingSensor board(2);
+    HangingBoard board(2);
     board.printer.inputs[config::input_pause] = config::Pin{"gpiochip0", 20u, false};
     auto lines =
         std::make_unique<gpio::MockInputs>(1, board.clock, [&]() -> std::optional<Diagnostic> {
@@ -138,4 +153,105 @@ TEST_CASE("print 9: inputs that are lost take the heat away at once, whatever it
     CHECK(report.error().message.find("chip unplugged") != std::string::npos);
     CHECK(board.has_hung);
     CHECK(board.was_cut);
+}
+
+TEST_CASE("print 8: a write that hung left the heat on, and the watchdogs were fed") {
+    HangingBoard board(6);
+    // The desk's own order: the path waits for no temperature.
+    board.control.post(SetTemperature{config::heater_tool, 210});
+    PrintJob job{board.cold_file(), board.printer, true,
+                 [&](const Progress&) { board.write_hangs = board.heat != 0; }};
+    job.control = &board.control;
+    const Result<PrintReport> report = print(job, board.chip, board.clock, &board.heating);
+    REQUIRE_FALSE(report.ok());
+    CHECK(report.error().status == ExitStatus::machine);
+    CHECK_MESSAGE(report.error().message.find("a write to the lines hangs") != std::string::npos,
+                  report.error().message);
+    CHECK(board.has_hung);
+    CHECK(board.was_cut);
+    CHECK(board.status_then.message.find("a write to the lines hangs") != std::string::npos);
+    // For the 3 s of silence.
+    CHECK(board.fed_meanwhile <= 4);
+}
+
+TEST_CASE("print 3, 6: a sensor that hung kept the lines of the motors and the reason from all") {
+    HangingBoard board(8);
+    board.outlasts_heat = true;
+    PrintJob job{board.file(), board.printer, false,
+                 [&](const Progress&) { board.hangs = board.heat != 0; }};
+    job.control = &board.control;
+    const Result<PrintReport> report = print(job, board.chip, board.clock, &board.heating);
+    REQUIRE_FALSE(report.ok());
+    CHECK(board.has_hung);
+    CHECK(board.was_cut);
+    CHECK(board.status_then.state == PrintState::failed);
+    CHECK(board.status_then.message.find("silent for more than 3 s") != std::string::npos);
+}
+
+TEST_CASE("print 4: a signal left the heat on until the head had come to rest") {
+    HangingBoard board(0);
+    for (config::Axis& axis : board.printer.axes) {
+        axis.max_speed_mm_s = 50;
+        axis.max_acceleration_mm_s2 = 50;
+    }
+    bool has_struck = false;
+    const ProgressSink strike = [&](const Progress& now) {
+        if (now.time_s > 1 && !std::exchange(has_struck, true)) std::raise(SIGTERM);
+    };
+    const Result<PrintReport> report = print({board.cold_file(), board.printer, true, strike},
+                                             board.chip, board.clock, &board.heating);
+    REQUIRE_FALSE(report.ok());
+    CHECK(report.error().status == ExitStatus::stopped);
+    CHECK(report.error().message.find("lost") == std::string::npos);
+    CHECK(board.cold_writes > 10);
+}
+
+TEST_CASE("print 10: a signal and a guard together stopped at once, and did not say so") {
+    HangingBoard board(0);
+    board.printer.inputs[config::input_pause] = config::Pin{"gpiochip0", 20u, false};
+    std::atomic<bool> has_struck{false};
+    auto lines =
+        std::make_unique<gpio::MockInputs>(1, board.clock, [&]() -> std::optional<Diagnostic> {
+            if (!has_struck) return std::nullopt;
+            return Diagnostic{Severity::error, ExitStatus::machine, "chip unplugged", {}};
+        });
+    Result<Buttons> buttons = Buttons::start(board.printer, std::move(lines));
+    REQUIRE(buttons.ok());
+    PrintJob job{board.cold_file(), board.printer, true, [&](const Progress& now) {
+                     if (now.time_s > 0.5 && !has_struck.exchange(true)) std::raise(SIGTERM);
+                 }};
+    job.control = &board.control;
+    const Result<PrintReport> report =
+        print(job, board.chip, board.clock, &board.heating, &*buttons);
+    REQUIRE_FALSE(report.ok());
+    CHECK(report.error().message == "chip unplugged");
+    CHECK(board.control.status().is_position_known);
+}
+
+TEST_CASE("print: one that resumes heated while it homed, with the nozzle in the part") {
+    HangingBoard board(0);
+    PrintJob job{board.cold_file(), board.printer, true, {}};
+    job.control = &board.control;
+    Resumption resumption;
+    resumption.state.temperatures.push_back({{format::HeaterKind::tool, 0}, 210});
+    job.resumption = resumption;
+    job.is_lifted = true;
+    bool was_warm = false;
+    job.before = [&](gpio::GpioChip&, gpio::Clock& clock, const StopSource& stop) -> Before {
+        for (int look = 0; look < 30; ++look) {
+            clock.wait_until_ns(clock.now_ns() + 20'000'000);
+            (void)stop();
+            was_warm |= board.heat != 0;
+        }
+        return {};
+    };
+    bool is_warm = false;
+    job.progress = [&](const Progress&) {
+        if (board.heat == 0 || std::exchange(is_warm, true)) return;
+        board.control.post(EmergencyStop{});
+    };
+    const Result<PrintReport> report = print(job, board.chip, board.clock, &board.heating);
+    REQUIRE_FALSE(report.ok());
+    CHECK_FALSE(was_warm);
+    CHECK(is_warm);
 }
