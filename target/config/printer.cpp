@@ -8,14 +8,13 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <map>
 #include <memory>
 #include <set>
 
 #include "base/constants.h"
 #include "base/nearest_name.h"
+#include "base/read_text.h"
 #include "target/config/heater_keys.h"
 #include "target/config/homing_keys.h"
 #include "target/config/idle_keys.h"
@@ -254,24 +253,6 @@ const std::pair<Place, std::string>* Walk::first_problem() const {
     return first == problems_.end() ? nullptr : &*first;
 }
 
-Result<std::string> read_text(const std::string& path) {
-    struct Close {
-        void operator()(std::FILE* file) const { std::fclose(file); }
-    };
-    const std::unique_ptr<std::FILE, Close> file(std::fopen(path.c_str(), "rbe"));
-    if (!file)
-        return input_error("cannot read the printer's file: " + std::string(std::strerror(errno)),
-                           path);
-    std::string text(largest_file + 1, '\0');
-    text.resize(std::fread(text.data(), 1, text.size(), file.get()));
-    if (std::ferror(file.get()))
-        return input_error("cannot read the printer's file: " + std::string(std::strerror(errno)),
-                           path);
-    if (text.size() > largest_file)
-        return input_error("more than 1 MiB is no printer's file", path);
-    return text;
-}
-
 Status take(Walk& walk, std::string_view text, const std::string& file) {
     const toml::parse_result parsed = toml::parse(text, file);
     if (!parsed)
@@ -289,7 +270,7 @@ Status take_calibration(Draft& draft, const std::string& printer_file) {
         path = printer_file.substr(0, printer_file.rfind('/') + 1) + path;
     const std::string file = path;
     if (::access(file.c_str(), F_OK) != 0 && errno == ENOENT) return Done{};
-    const Result<std::string> text = read_text(file);
+    const Result<std::string> text = read_text(file == "-" ? "./-" : file, largest_file);
     if (!text) return text.error();
     Walk walk;
     draft.printer.uncalibrated = std::make_shared<const Printer>(draft.printer);
@@ -323,9 +304,9 @@ Result<Printer> parse_printer(std::string_view text, const std::string& file) {
 }
 
 Result<Printer> read_printer(const std::string& path) {
-    const Result<std::string> text = read_text(path);
+    const Result<std::string> text = read_text(path, largest_file);
     if (!text) return text.error();
-    return parse_printer(*text, path);
+    return parse_printer(*text, path == "-" ? standard_input_name : path);
 }
 
 std::vector<std::pair<std::string, Pin>> used_lines(const Printer& printer) {

@@ -123,6 +123,7 @@ struct Printer {
 // A middling Cartesian printer without lines and with room for any part, to simulate without a file.
 Printer generic_printer();
 
+// "-" is standard input.
 Result<Printer> read_printer(const std::string& path);
 // `file` names the text in messages.
 Result<Printer> parse_printer(std::string_view text, const std::string& file);
