@@ -53,7 +53,9 @@ Status PowerStage::all_off() {
 
 std::optional<Trip> PowerStage::expire(double time_s) {
     const std::lock_guard lock(mutex_);
-    if (latched_ || !refreshed_s_ || time_s - *refreshed_s_ <= silent_s) return std::nullopt;
+    // A sensor may hang in the very first tick.
+    if (!refreshed_s_) refreshed_s_ = time_s;
+    if (latched_ || time_s - *refreshed_s_ <= silent_s) return std::nullopt;
     (void)latch();
     return Trip{GuardKind::silent,
                 "the control of the heaters has been silent for more than 3 s: a sensor's file "

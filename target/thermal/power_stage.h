@@ -6,8 +6,8 @@
 //     write; the call refreshes all outputs.
 //  2. all_off() switches every heater off in one write and latches: nothing switches a heater on again. Fans keep
 //     what they have: they cool.
-//  3. expire() does so if nobody has refreshed the outputs for silent_s, and says so; it may be called from
-//     another thread than apply(), as all of this.
+//  3. expire() does so if nobody has refreshed the outputs for silent_s, or since it was first called, and says so; it
+//     may be called from another thread than apply(), as all of this.
 //  4. A write that fails is a diagnostic of apply(), and latches too.
 //  5. release() makes all lines inactive and hands them back; so does the destructor.
 

@@ -80,7 +80,7 @@ TEST_CASE("power stage 2: off is one write and for good; fans keep turning") {
 
 TEST_CASE("power stage 3: heaters that nobody refreshes for 3 s go off") {
     Bench bench;
-    CHECK_FALSE(bench.stage.expire(100));  // never in use
+    CHECK_FALSE(bench.stage.expire(100));  // from here on
     REQUIRE(bench.stage.apply(full, 100).ok());
     CHECK_FALSE(bench.stage.expire(102.9));
     CHECK(bench.chip.levels() == 7);
@@ -90,6 +90,17 @@ TEST_CASE("power stage 3: heaters that nobody refreshes for 3 s go off") {
     CHECK(bench.chip.levels() == 4);
     CHECK_FALSE(bench.stage.expire(110));  // told once
     REQUIRE(bench.stage.apply(full, 111).ok());
+    CHECK(bench.chip.levels() == 4);
+}
+
+TEST_CASE("power stage 3: control that hung before its first tick was never told") {
+    Bench bench;
+    CHECK_FALSE(bench.stage.expire(100));
+    CHECK_FALSE(bench.stage.expire(102.9));
+    const auto trip = bench.stage.expire(103.1);
+    REQUIRE(trip);
+    CHECK(trip->kind == GuardKind::silent);
+    REQUIRE(bench.stage.apply(full, 104).ok());
     CHECK(bench.chip.levels() == 4);
 }
 
