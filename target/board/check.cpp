@@ -12,6 +12,7 @@
 
 #include "base/read_text.h"
 #include "base/text.h"
+#include "target/run/heating.h"
 #include "target/run/line_layout.h"
 #include "target/run/real_time.h"
 #include "target/thermal/sensor.h"
@@ -33,6 +34,8 @@ public:
         for (std::size_t i = 0; i < config::heater_count; ++i)
             if (printer_.heaters[i]) heater(i);
         if (printer_.part_fan) channel("fan.part.pwm", printer_.part_fan->pwm);
+        for (const auto& [key, message] : run::shared_files(printer_, board_.root))
+            fail(key, message);
         privileges();
         kernel();
         clock();

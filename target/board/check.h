@@ -5,7 +5,7 @@
 //  1. Every line, sensor and PWM channel of the printer is looked up, and what stands in the way of a print is an error;
 //     what makes a print worse or a guard weaker is a warning. Both say what to do.
 //  2. No line is held, no file is written, no channel is switched.
-//  3. A line that two keys lead to by different names is an error.
+//  3. A line, channel or sensor that two keys lead to by different names is an error.
 //  4. Files of /sys, /proc and /dev are looked for below Board::root, so that any board can be described by a folder.
 //  5. Whatever is in those files, there is no crash.
 

@@ -184,21 +184,12 @@ void Walk::check_lines() {
 // Of two that share a channel one would be heated by the other's power, and stay on when that is a fan; of two that share a
 // sensor nobody would watch one.
 void Walk::check_files() {
-    std::map<std::string, std::string> users;
-    const auto use = [&](const std::string& path, std::string file) {
-        while (file.ends_with('/')) file.pop_back();
-        if (file.empty()) return;
-        const auto [user, fresh] = users.emplace(file, path);
-        if (!fresh) problem(place(path), path + ": this file is already used by " + user->second);
-    };
-    for (std::size_t i = 0; i < heater_count; ++i) {
-        const std::optional<Heater>& heater = draft_.printer.heaters[i];
-        if (!heater) continue;
-        const std::string section = "heater." + std::string(heater_names[i]);
-        use(section + ".pwm", heater->pwm);
-        use(section + ".sensor.file", heater->sensor.file);
-    }
-    if (const auto& fan = draft_.printer.part_fan) use("fan.part.pwm", fan->pwm);
+    const auto files = used_files(draft_.printer);
+    for (auto file = files.begin(); file != files.end(); ++file)
+        for (auto user = files.begin(); user != file; ++user)
+            if (file->second == user->second)
+                problem(place(file->first),
+                        file->first + ": this file is already used by " + user->first);
 }
 
 // Only what is written there again when something else is calibrated.
@@ -313,6 +304,23 @@ std::vector<std::pair<std::string, Pin>> used_lines(const Printer& printer) {
     std::vector<std::pair<std::string, Pin>> used;
     for (const auto& [path, pin] : lines_of(printer))
         if (*pin) used.emplace_back(path, **pin);
+    return used;
+}
+
+std::vector<std::pair<std::string, std::string>> used_files(const Printer& printer) {
+    std::vector<std::pair<std::string, std::string>> used;
+    const auto use = [&](const std::string& path, std::string file) {
+        while (file.ends_with('/')) file.pop_back();
+        if (!file.empty()) used.emplace_back(path, std::move(file));
+    };
+    for (std::size_t i = 0; i < heater_count; ++i) {
+        const std::optional<Heater>& heater = printer.heaters[i];
+        if (!heater) continue;
+        const std::string section = "heater." + std::string(heater_names[i]);
+        use(section + ".pwm", heater->pwm);
+        use(section + ".sensor.file", heater->sensor.file);
+    }
+    if (printer.part_fan) use("fan.part.pwm", printer.part_fan->pwm);
     return used;
 }
 

@@ -135,6 +135,8 @@ bool is_calibration_key(std::string_view path);
 
 // Every line of the printer, with the key that names it.
 std::vector<std::pair<std::string, Pin>> used_lines(const Printer& printer);
+// Of its PWM channels, the folders, without a slash at the end, and of its heaters' sensors.
+std::vector<std::pair<std::string, std::string>> used_files(const Printer& printer);
 
 // Whether the head can stand where the printer's probe is over the place.
 bool probe_reaches(const Printer& printer, double x_mm, double y_mm);

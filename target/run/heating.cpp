@@ -2,10 +2,13 @@
 
 #include "target/run/heating.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <chrono>
 #include <thread>
 
+#include "base/text.h"
 #include "target/gpio/gpiod_chip.h"
 #include "target/run/line_keeper.h"
 #include "target/run/line_layout.h"
@@ -92,7 +95,33 @@ Result<thermal::HeaterPort> open_port(const config::Printer& printer, std::size_
 
 }  // namespace
 
+std::vector<KeyProblem> shared_files(const config::Printer& printer, const std::string& root) {
+    const std::vector<std::pair<std::string, std::string>> files = config::used_files(printer);
+    // A channel is its folder.
+    const auto look = [&root](const std::string& path, struct stat& file) {
+        return ::stat((root + path).c_str(), &file) == 0;
+    };
+    std::vector<KeyProblem> problems;
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        struct stat file {};
+        if (!look(files[i].second, file)) continue;
+        for (std::size_t j = 0; j < i; ++j) {
+            struct stat other {};
+            if (look(files[j].second, other) && other.st_ino == file.st_ino &&
+                other.st_dev == file.st_dev)
+                problems.emplace_back(
+                    files[i].first,
+                    formatted("%s is %s too, by another path: give one of them another",
+                              files[i].second.c_str(), files[j].first.c_str()));
+        }
+    }
+    return problems;
+}
+
 Result<Heating> open_heating(const config::Printer& printer) {
+    if (const auto shared = shared_files(printer, ""); !shared.empty())
+        return Diagnostic{
+            Severity::error, ExitStatus::machine, shared[0].first + ": " + shared[0].second, {}};
     std::vector<thermal::HeaterPort> ports;
     Outputs all;
     for (std::size_t i = 0; i < config::heater_count; ++i) {

@@ -5,6 +5,8 @@
 //     nothing is held.
 //     Lines are held and PWM channels watched by a process of their own (line_keeper.h), so that a crash leaves no heater
 //     on; it must be called before any thread is started.
+//     Nor may two keys lead to one channel or sensor, by whatever paths: of two that share a channel one would be heated by
+//     the other's power.
 //  2. tend() ticks until `finished`, on its own thread, and counts the ticks; a tick that takes long makes no others
 //     hurry.
 //  3. The first guard that fires is told once, through `tripped`, from whichever thread finds it.
@@ -17,6 +19,9 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "target/config/printer.h"
 #include "target/gpio/gpio_chip.h"
@@ -31,6 +36,11 @@ struct Heating {
     std::unique_ptr<thermal::PowerStage> stage;
     std::unique_ptr<thermal::HeatControl> control;
 };
+
+// A key, and what is wrong with what it names.
+using KeyProblem = std::pair<std::string, std::string>;
+// Keys that lead to one channel or sensor by different paths; all are looked for below `root`.
+std::vector<KeyProblem> shared_files(const config::Printer& printer, const std::string& root);
 
 Result<Heating> open_heating(const config::Printer& printer);
 

@@ -152,6 +152,24 @@ TEST_CASE("check 1: PWM channels that are not exported or have no period are tol
     CHECK(says(fan(), Severity::error, "export"));
 }
 
+TEST_CASE("check 3: two paths to one channel or sensor were two of them") {
+    const Folder folder;
+    std::filesystem::create_directory_symlink("pwm", folder.root() + "/sys/pwm0");
+    std::filesystem::create_symlink("adc", folder.root() + "/sys/adc0");
+    config::Printer printer = good_printer();
+    auto& tool = printer.heaters[config::heater_tool];
+    auto& bed = printer.heaters[config::heater_bed];
+    tool->output.reset();
+    tool->pwm = "/sys/pwm0";
+    bed = tool;
+    bed->pwm.clear();
+    bed->sensor.file = "/sys/adc0";
+    const auto findings = check(printer, good_board(folder));
+    CHECK(says(problem(findings, "fan.part.pwm"), Severity::error, "is heater.tool.pwm too,"));
+    CHECK(says(problem(findings, "heater.bed.sensor.file"), Severity::error,
+               "is heater.tool.sensor.file too,"));
+}
+
 TEST_CASE("check 1: what makes a board late, or leaves it unwatched, is a warning with a remedy") {
     const Folder folder;
     const std::string kernel = "proc/sys/kernel/sched_rt_runtime_us";

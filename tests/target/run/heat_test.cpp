@@ -515,6 +515,41 @@ TEST_CASE("print 2: a file that heats is not printed cold by mistake") {
     CHECK(board.writes.empty());
 }
 
+TEST_CASE(
+    "heating 1: a fan by another path to the heater's channel switched the heater on after a "
+    "guard") {
+    const std::filesystem::path folder = lyr::tests::scratch_folder("heat_same"),
+                                link = lyr::tests::scratch("heat_same_link");
+    for (const char* name : {"period", "duty_cycle", "enable", "sensor"})
+        std::ofstream(folder / name) << 25 << '\n';
+    std::filesystem::remove(link);
+    std::filesystem::create_directory_symlink(folder, link);
+    config::Printer printer = config::generic_printer();
+    config::Heater& tool = *printer.heaters[config::heater_tool];
+    tool.sensor.kind = config::SensorKind::celsius;
+    tool.sensor.celsius_per_unit = 1;
+    tool.sensor.file = folder / "sensor";
+    tool.pwm = folder.string() + '/';
+    printer.heaters[config::heater_bed].reset();
+    const auto refused = [&](const std::string& key, const std::string& other) {
+        const Result<Heating> heating = open_heating(printer);
+        REQUIRE_FALSE(heating.ok());
+        CHECK(heating.error().status == ExitStatus::machine);
+        const std::string& message = heating.error().message;
+        CHECK_MESSAGE(message.starts_with(key + ": "), message);
+        CHECK_MESSAGE(message.find(" is " + other + " too,") != std::string::npos, message);
+    };
+    printer.part_fan->pwm = link;
+    refused("fan.part.pwm", "heater.tool.pwm");
+    printer.part_fan.reset();
+    printer.heaters[config::heater_bed] = tool;
+    printer.heaters[config::heater_bed]->pwm = "/nonexistent/pwm0";
+    printer.heaters[config::heater_bed]->sensor.file = link / "sensor";
+    refused("heater.bed.sensor.file", "heater.tool.sensor.file");
+    std::filesystem::remove(link);
+    std::filesystem::remove_all(folder);
+}
+
 TEST_CASE("heating 1: what is missing to heat is told by its key or file") {
     config::Printer printer = config::generic_printer();
     const auto complaint = [&] {
