@@ -22,7 +22,10 @@ Diagnostic failed(const std::string& file, const std::string& why) {
 }
 
 bool write_text(int file, const std::string& text) {
-    return ::pwrite(file, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size());
+    const ssize_t written = ::pwrite(file, text.data(), text.size(), 0);
+    // One that is short sets none.
+    if (written >= 0) errno = EIO;
+    return written == static_cast<ssize_t>(text.size());
 }
 
 }  // namespace
@@ -66,7 +69,9 @@ KernelPwm::~KernelPwm() {
 Status KernelPwm::set(double share) {
     const double wanted = std::clamp(share, 0.0, 1.0) * static_cast<double>(period_ns_);
     const std::int64_t duty_ns = std::llround(wanted);
-    if (duty_ns == duty_ns_) return Done{};
+    if (duty_ns == duty_ns_ && duty_ns != 0) return Done{};
+    // One that fails may have got there in part.
+    duty_ns_ = -1;
     if (!write_text(duty_file_, std::to_string(duty_ns) + '\n'))
         return failed(folder_ + "/duty_cycle", std::strerror(errno));
     duty_ns_ = duty_ns;

@@ -3,7 +3,7 @@
 // Contract
 //  1. open() takes a channel that is exported and has a period, and leaves it enabled with nothing on it; what
 //     is missing is a diagnostic (status machine) that says what to write where.
-//  2. set() writes only what changes.
+//  2. set() writes only what changes, but an off always, and anything after a write that failed.
 //  3. The destructor leaves nothing on it.
 
 #pragma once
@@ -32,7 +32,7 @@ private:
     std::string folder_;
     int duty_file_;
     std::int64_t period_ns_;
-    std::int64_t duty_ns_ = -1;  // as last written
+    std::int64_t duty_ns_ = -1;  // as last written; below 0: not known
 };
 
 }  // namespace lyr::thermal

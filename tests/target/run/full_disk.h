@@ -1,4 +1,4 @@
-// A disk that takes nothing.
+// A disk that takes nothing, or little.
 
 #pragma once
 
@@ -9,14 +9,14 @@
 
 namespace lyr::tests {
 
-// While it lives no file of this process can be written.
+// While it lives no file of this process can be written but for its first bytes.
 class FullDisk {
 public:
-    FullDisk() {
+    explicit FullDisk(rlim_t bytes = 0) {
         was_told_ = std::signal(SIGXFSZ, SIG_IGN);
         REQUIRE(::getrlimit(RLIMIT_FSIZE, &before_) == 0);
-        const rlimit none{0, before_.rlim_max};
-        REQUIRE(::setrlimit(RLIMIT_FSIZE, &none) == 0);
+        const rlimit some{bytes, before_.rlim_max};
+        REQUIRE(::setrlimit(RLIMIT_FSIZE, &some) == 0);
     }
     ~FullDisk() {
         ::setrlimit(RLIMIT_FSIZE, &before_);

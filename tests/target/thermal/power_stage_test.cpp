@@ -5,11 +5,14 @@
 #include <doctest/doctest.h>
 
 #include <array>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
 #include "scratch.h"
 #include "target/gpio/mock_chip.h"
+#include "target/run/full_disk.h"
 
 using namespace lyr;
 using namespace lyr::thermal;
@@ -42,6 +45,11 @@ constexpr std::array<double, 3> full{1, 1, 1};
 struct PwmFolder {
     std::string path = lyr::tests::scratch("pwm");
     PwmFolder() { std::filesystem::create_directories(path); }
+    explicit PwmFolder(const std::string& period) : PwmFolder() {
+        hold("period", period);
+        hold("duty_cycle", "");
+        hold("enable", "0\n");
+    }
     ~PwmFolder() { std::filesystem::remove_all(path); }
     void hold(const char* file, const std::string& text) const {
         std::ofstream(path + '/' + file) << text;
@@ -166,5 +174,28 @@ TEST_CASE("kernel pwm: a channel is enabled with nothing on it, set in nanosecon
     REQUIRE(stage.release().ok());
     CHECK(stage.latched());
     REQUIRE(stage.apply(std::array{0.5}, 0.1).ok());
+    CHECK(folder.held("duty_cycle") == 0);
+}
+
+TEST_CASE(
+    "kernel pwm 2: a write that failed half-way stayed, for the off after it was not written") {
+    const PwmFolder folder("20000000\n");
+    Result<KernelPwm> pwm = KernelPwm::open(folder.path);
+    REQUIRE(pwm.ok());
+    REQUIRE(pwm->set(0).ok());
+    {
+        const lyr::tests::FullDisk disk(4);
+        errno = ENOENT;
+        const Status failed = pwm->set(0.5);
+        REQUIRE_FALSE(failed.ok());
+        // What an earlier call had left in errno was told for the reason.
+        CHECK_MESSAGE(failed.error().message.ends_with(std::strerror(EIO)), failed.error().message);
+    }
+    REQUIRE(folder.held("duty_cycle") == 1'000);
+    REQUIRE(pwm->set(0).ok());
+    CHECK(folder.held("duty_cycle") == 0);
+    // Whoever else wrote it.
+    folder.hold("duty_cycle", "5000\n");
+    REQUIRE(pwm->set(0).ok());
     CHECK(folder.held("duty_cycle") == 0);
 }
