@@ -2,6 +2,8 @@
 
 #include "target/board/check.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -149,6 +151,15 @@ void Check::sensor(const std::string& section, const config::Sensor& settings) {
         good(section, reads);
 }
 
+// By a print or another program that heats; looked at by a lock that many may have, and that is gone with this call.
+bool is_locked(const std::string& file) {
+    const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0) return false;
+    const bool is_refused = ::flock(descriptor, LOCK_SH | LOCK_NB) != 0;
+    ::close(descriptor);
+    return is_refused;
+}
+
 void Check::channel(const std::string& key, const std::string& folder) {
     if (folder.empty()) return;
     const std::string place = board_.root + folder;
@@ -162,6 +173,8 @@ void Check::channel(const std::string& key, const std::string& folder) {
     else if (::access((place + "/duty_cycle").c_str(), W_OK) != 0 ||
              ::access((place + "/enable").c_str(), W_OK) != 0)
         fail(key, folder + " may not be written: give its files to the group of this user (udev)");
+    else if (is_locked(place + "/duty_cycle"))
+        fail(key, folder + " is in use: end that program first (fuser tells which)");
     else
         good(key, formatted("a period of %lld ns", static_cast<long long>(period_ns)));
 }

@@ -58,7 +58,8 @@ Status drop_channels(const config::Printer& printer) {
     Status dropped = Done{};
     for (const std::optional<config::Heater>& heater : printer.heaters) {
         if (!heater || heater->pwm.empty()) continue;
-        const auto channel = thermal::KernelPwm::open(heater->pwm);
+        const auto channel =
+            thermal::KernelPwm::open(heater->pwm, thermal::KernelPwm::Use::switch_off);
         if (!channel && dropped) dropped = channel.error();
     }
     return dropped;

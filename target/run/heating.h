@@ -11,7 +11,7 @@
 //     hurry.
 //  3. The first guard that fires is told once, through `tripped`, from whichever thread finds it.
 //  4. switch_off() makes all lines of heaters and motors inactive and empties the heaters' PWM channels, for prints
-//     that were killed. Where a line cannot be had, as that of a print at work, nothing is touched.
+//     that were killed, whoever has locked them. Where a line cannot be had, as that of a print at work, nothing is touched.
 
 #pragma once
 

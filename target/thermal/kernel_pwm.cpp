@@ -3,6 +3,7 @@
 #include "target/thermal/kernel_pwm.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -17,6 +18,8 @@
 namespace lyr::thermal {
 namespace {
 
+constexpr const char* in_use = "in use: end that program first (fuser tells which)";
+
 Diagnostic failed(const std::string& file, const std::string& why) {
     return {Severity::error, ExitStatus::machine, "kernel PWM: " + why, {.file = file}};
 }
@@ -30,7 +33,7 @@ bool write_text(int file, const std::string& text) {
 
 }  // namespace
 
-Result<KernelPwm> KernelPwm::open(const std::string& folder) {
+Result<KernelPwm> KernelPwm::open(const std::string& folder, Use use) {
     constexpr std::size_t longest_number = 64;
     const std::string period_path = folder + "/period", duty_path = folder + "/duty_cycle",
                       enable_path = folder + "/enable";
@@ -44,6 +47,12 @@ Result<KernelPwm> KernelPwm::open(const std::string& folder) {
         return failed(period_path, "no period is set; write one in nanoseconds to this file");
     const int duty = ::open(duty_path.c_str(), O_WRONLY | O_CLOEXEC);
     if (duty < 0) return failed(duty_path, std::strerror(errno));
+    // Held for as long as anyone has this descriptor, as a keeper that was forked does: until it has dropped the channel.
+    if (use == Use::alone && ::flock(duty, LOCK_EX | LOCK_NB) != 0) {
+        const int error = errno;
+        ::close(duty);
+        return failed(duty_path, error == EWOULDBLOCK ? in_use : std::strerror(error));
+    }
     KernelPwm pwm(folder, duty, period_ns);
     if (Status off = pwm.set(0); !off) return off.error();
     const int enable = ::open(enable_path.c_str(), O_WRONLY | O_CLOEXEC);

@@ -5,6 +5,8 @@
 //     is missing is a diagnostic (status machine) that says what to write where.
 //  2. set() writes only what changes, but an off always, and anything after a write that failed.
 //  3. The destructor leaves nothing on it.
+//  4. A channel that is locked (flock) by another is a diagnostic, and nothing is written. The lock of Use::alone lasts until
+//     the object and all processes forked since are gone. Use::switch_off takes none and heeds none.
 
 #pragma once
 
@@ -17,7 +19,9 @@ namespace lyr::thermal {
 
 class KernelPwm {
 public:
-    static Result<KernelPwm> open(const std::string& folder);
+    enum class Use : std::uint8_t { alone, switch_off };
+
+    static Result<KernelPwm> open(const std::string& folder, Use use = Use::alone);
     KernelPwm(KernelPwm&& other) noexcept;
     KernelPwm& operator=(KernelPwm&&) = delete;
     ~KernelPwm();

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "scratch.h"
+#include "target/thermal/kernel_pwm.h"
 
 using namespace lyr;
 using namespace lyr::board;
@@ -150,6 +151,17 @@ TEST_CASE("check 1: PWM channels that are not exported or have no period are tol
     CHECK(says(fan(), Severity::error, "has no period"));
     folder.remove("sys/pwm");
     CHECK(says(fan(), Severity::error, "export"));
+}
+
+TEST_CASE("check 1: a PWM channel that a print has in use was good") {
+    const Folder folder;
+    {
+        const auto held = thermal::KernelPwm::open(folder.root() + "/sys/pwm");
+        REQUIRE(held.ok());
+        CHECK(says(problem(check(good_printer(), good_board(folder)), "fan.part.pwm"),
+                   Severity::error, "in use"));
+    }
+    CHECK(worst(check(good_printer(), good_board(folder))) == Severity::note);
 }
 
 TEST_CASE("check 3: two paths to one channel or sensor were two of them") {

@@ -70,3 +70,34 @@ TEST_CASE("heating 4: of a print that is at work nothing is touched") {
     CHECK(duty_ns(pwm) == 20'000);
     std::filesystem::remove_all(pwm);
 }
+
+TEST_CASE(
+    "heating 1, 4: a channel that is held is not heated by another, and is switched off all the "
+    "same") {
+    const std::filesystem::path folder = lyr::tests::scratch_folder("switch_off_held");
+    config::Printer printer = wired_printer(folder);
+    std::ofstream(folder / "sensor") << 25 << '\n';
+    config::Heater& bed = *printer.heaters[config::heater_bed];
+    bed.sensor.kind = config::SensorKind::celsius;
+    bed.sensor.celsius_per_unit = 1;
+    bed.sensor.file = folder / "sensor";
+    printer.heaters[config::heater_tool].reset();
+    {
+        const Result<Heating> first = open_heating(printer);
+        REQUIRE(first.ok());
+        std::ofstream(folder / "duty_cycle") << 5'000 << '\n';
+        const Result<Heating> second = open_heating(printer);
+        REQUIRE_FALSE(second.ok());
+        CHECK(second.error().where.file == folder / "duty_cycle");
+        CHECK(duty_ns(folder) == 5'000);
+        gpio::VirtualClock clock;
+        CHECK(switch_off(printer, [&](std::span<const gpio::LineRequest> requests) {
+                  return Result<std::unique_ptr<gpio::GpioChip>>(std::make_unique<gpio::MockChip>(
+                      requests.size(), clock, gpio::LineObserver()));
+              }).ok());
+        CHECK(duty_ns(folder) == 0);
+    }
+    // Its keeper has ended, too.
+    CHECK(open_heating(printer).ok());
+    std::filesystem::remove_all(folder);
+}

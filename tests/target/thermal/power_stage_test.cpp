@@ -199,3 +199,21 @@ TEST_CASE(
     REQUIRE(pwm->set(0).ok());
     CHECK(folder.held("duty_cycle") == 0);
 }
+
+TEST_CASE("kernel pwm 4: two programs drove one channel, each believing in what it had written") {
+    const PwmFolder folder("40000\n");
+    {
+        Result<KernelPwm> first = KernelPwm::open(folder.path);
+        REQUIRE(first.ok());
+        const KernelPwm held = std::move(*first);
+        folder.hold("duty_cycle", "20000\n");
+        const Result<KernelPwm> second = KernelPwm::open(folder.path);
+        REQUIRE_FALSE(second.ok());
+        CHECK(second.error().status == ExitStatus::machine);
+        CHECK(second.error().where.file == folder.path + "/duty_cycle");
+        CHECK(second.error().message.find("end that program") != std::string::npos);
+        CHECK(folder.held("duty_cycle") == 20'000);
+    }
+    CHECK(folder.held("duty_cycle") == 0);
+    CHECK(KernelPwm::open(folder.path).ok());
+}
