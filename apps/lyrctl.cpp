@@ -147,10 +147,6 @@ Result<std::string> request_of(const Arguments& arguments) {
     return unknown_command(words[0]);
 }
 
-Diagnostic not_done(const std::string& message) {
-    return {Severity::error, ExitStatus::machine, message, {}};
-}
-
 Result<std::string> find_socket(const Arguments& arguments) {
     if (!arguments.socket.empty()) return arguments.socket;
     const std::vector<std::string> found = control::sockets();
@@ -158,7 +154,8 @@ Result<std::string> find_socket(const Arguments& arguments) {
     std::string places;
     for (const std::string& place : found.empty() ? control::socket_folders() : found)
         places += (places.empty() ? "" : ", ") + place;
-    if (found.empty()) return not_done("no printer is at work: there is no socket in " + places);
+    if (found.empty())
+        return machine_error("no printer is at work: there is no socket in " + places);
     return usage("several printers are at work; choose one with --socket: " + places);
 }
 
@@ -175,7 +172,7 @@ Status watch(control::Link& link, const Arguments& arguments) {
         const Result<control::Answer> answer = link.next();
         if (!answer) return answer.error();
         if (const auto* refused = std::get_if<control::Refused>(&*answer))
-            return not_done(refused->message);
+            return machine_error(refused->message);
         const auto* told = std::get_if<control::Told>(&*answer);
         if (!told) continue;
         if (Status shown = show(*told, arguments); !shown) return shown;
@@ -186,7 +183,7 @@ Status watch(control::Link& link, const Arguments& arguments) {
                               ExitStatus::stopped,
                               "the print was stopped: " + told->status.message,
                               {}};
-        return not_done("the print failed: " + told->status.message);
+        return machine_error("the print failed: " + told->status.message);
     }
 }
 
@@ -215,7 +212,7 @@ Status work(const Arguments& arguments) {
     const Result<control::Answer> answer = link->next();
     if (!answer) return answer.error();
     if (const auto* refused = std::get_if<control::Refused>(&*answer))
-        return not_done(refused->message);
+        return machine_error(refused->message);
     if (const auto* told = std::get_if<control::Told>(&*answer)) return show(*told, arguments);
     return Done{};
 }

@@ -125,15 +125,6 @@ void add_options(Options& app, Arguments& arguments) {
     add_board_options(app, arguments.board);
 }
 
-// "1:02:03"
-std::string clock_text(double time_s) {
-    const auto whole_s = static_cast<long long>(time_s);
-    char text[40];
-    std::snprintf(text, sizeof text, "%lld:%02lld:%02lld", whole_s / 3600, whole_s / 60 % 60,
-                  whole_s % 60);
-    return text;
-}
-
 // How far a simulation or print is, as one line.
 run::ProgressSink shown_on(ProgressLine& line) {
     return [&line](const run::Progress& progress) {

@@ -15,10 +15,7 @@ Status check_board(const config::Printer& printer, bool json) {
     const Status told =
         tell(json ? board::json_of(printer.name, findings) : board::text_of(findings));
     if (!told || board::worst(findings) != Severity::error) return told;
-    return Diagnostic{Severity::error,
-                      ExitStatus::machine,
-                      "this board cannot print what \"" + printer.name + "\" asks for",
-                      {}};
+    return machine_error("this board cannot print what \"" + printer.name + "\" asks for");
 }
 
 Status measure(const Program& program, const BoardArguments& arguments,

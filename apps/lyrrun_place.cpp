@@ -155,11 +155,8 @@ Status work_place(const Program& program, const PlaceArguments& arguments, const
     home::AxisSet axes = arguments.home.value_or(home::AxisSet());
     if (axes.none()) axes = home::homable(job.printer);
     if (arguments.home && axes.none())
-        return Diagnostic{
-            Severity::error,
-            ExitStatus::machine,
-            "printer \"" + job.printer.name + "\" has no endstops: give axis.x.endstop and others",
-            {}};
+        return machine_error("printer \"" + job.printer.name +
+                             "\" has no endstops: give axis.x.endstop and others");
     const Result<home::Report> report = home::home(job, axes, arguments.jog_mm);
     if (!report) return report.error();
     show(program, report->warnings);

@@ -34,6 +34,10 @@ void append_coordinate(std::string& line, const char* name, const std::optional<
 
 }  // namespace
 
+Diagnostic machine_error(std::string message) {
+    return {Severity::error, ExitStatus::machine, std::move(message), {}};
+}
+
 std::string to_string(const Diagnostic& diagnostic) {
     const Location& where = diagnostic.where;
     std::string line;

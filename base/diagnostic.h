@@ -56,6 +56,9 @@ using Diagnostics = std::vector<Diagnostic>;
 
 std::string to_string(const Diagnostic& diagnostic);
 
+// An error with status machine, and without a place.
+Diagnostic machine_error(std::string message);
+
 // A value or the reason why there is none. What a temporary holds is moved out of it, so that `auto&& x = *f();` and
 // `for (auto& x : *f())` do not refer to what is gone.
 template <class T>

@@ -124,6 +124,11 @@ std::optional<double> finite_number(std::string_view text) {
     return value;
 }
 
+std::string clock_text(double time_s) {
+    const auto whole_s = static_cast<long long>(time_s);
+    return formatted("%lld:%02lld:%02lld", whole_s / 3600, whole_s / 60 % 60, whole_s % 60);
+}
+
 std::string shortest(double value) {
     char text[32];
     const auto [end, error] = std::to_chars(text, text + sizeof text, value);

@@ -24,6 +24,9 @@ std::string in_json(double value, int decimals);
 // "1 layer", "2 layers", "0 layers": for nouns whose plural takes an s.
 std::string counted(std::uint64_t count, std::string_view noun);
 
+// "1:02:03"
+std::string clock_text(double time_s);
+
 // Decimal, with or without exponent, and nothing else in the text; none if not finite.
 std::optional<double> finite_number(std::string_view text);
 

@@ -59,11 +59,6 @@ Told told_in(const json& object) {
     return told;
 }
 
-std::string clock_text(double time_s) {
-    const auto whole_s = static_cast<long long>(time_s);
-    return formatted("%lld:%02lld:%02lld", whole_s / 3600, whole_s / 60 % 60, whole_s % 60);
-}
-
 }  // namespace
 
 std::optional<Answer> read_answer(std::string_view line) {

@@ -10,7 +10,6 @@
 namespace lyr::gpio {
 namespace {
 
-constexpr std::int64_t ns_per_s = 1'000'000'000;
 constexpr std::int64_t ns_per_us = 1'000;
 
 }  // namespace
@@ -18,16 +17,13 @@ constexpr std::int64_t ns_per_us = 1'000;
 std::int64_t MonotonicClock::now_ns() const {
     timespec time{};
     ::clock_gettime(CLOCK_MONOTONIC, &time);
-    return std::int64_t{time.tv_sec} * ns_per_s + time.tv_nsec;
+    return ns_of(time);
 }
 
 std::int64_t MonotonicClock::wait_until_ns(std::int64_t time_ns) {
     std::int64_t now = now_ns();
     while (time_ns - now > awake_ns) {
-        const std::int64_t wake_ns = time_ns - awake_ns;
-        timespec wake{};
-        wake.tv_sec = static_cast<time_t>(wake_ns / ns_per_s);
-        wake.tv_nsec = static_cast<long>(wake_ns % ns_per_s);
+        const timespec wake = timespec_of(time_ns - awake_ns);
         // A signal ends the sleep early; the loop then sleeps on for what is left.
         ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &wake, nullptr);
         now = now_ns();

@@ -15,12 +15,23 @@
 
 #pragma once
 
+#include <time.h>
+
 #include <array>
 #include <atomic>
 #include <cstdint>
 #include <functional>
 
 namespace lyr::gpio {
+
+// As the kernel's calls have it.
+constexpr std::int64_t ns_of(const timespec& time) {
+    return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
+}
+constexpr timespec timespec_of(std::int64_t time_ns) {
+    return {static_cast<time_t>(time_ns / 1'000'000'000),
+            static_cast<long>(time_ns % 1'000'000'000)};
+}
 
 class Clock {
 public:

@@ -6,12 +6,11 @@
 #include <array>
 #include <cerrno>
 
+#include "target/gpio/clock.h"
 #include "target/gpio/gpiod_calls.h"
 
 namespace lyr::gpio::calls {
 namespace {
-
-constexpr std::int64_t ns_per_s = 1'000'000'000;
 
 int flags_of(Drive drive) {
     return drive == Drive::open_drain ? GPIOD_LINE_REQUEST_FLAG_OPEN_DRAIN : 0;
@@ -141,8 +140,7 @@ int take(Watched& watched, std::span<KernelEdge> edges) {
     const auto room = static_cast<unsigned>(std::min(edges.size(), events.size()));
     const int count = ::gpiod_line_event_read_multiple(watched.line, events.data(), room);
     for (std::size_t i = 0; i < static_cast<std::size_t>(std::max(count, 0)); ++i)
-        edges[i] = {std::int64_t{events[i].ts.tv_sec} * ns_per_s + events[i].ts.tv_nsec,
-                    events[i].event_type == GPIOD_LINE_EVENT_RISING_EDGE};
+        edges[i] = {ns_of(events[i].ts), events[i].event_type == GPIOD_LINE_EVENT_RISING_EDGE};
     return count;
 }
 

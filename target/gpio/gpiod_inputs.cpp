@@ -4,7 +4,6 @@
 #include "target/gpio/gpiod_inputs.h"
 
 #include <poll.h>
-#include <time.h>
 
 #include <algorithm>
 #include <array>
@@ -12,12 +11,11 @@
 #include <cstring>
 #include <vector>
 
+#include "target/gpio/clock.h"
 #include "target/gpio/gpiod_lines.h"
 
 namespace lyr::gpio {
 namespace {
-
-constexpr std::int64_t ns_per_s = 1'000'000'000;
 
 struct Input {
     OpenChip chip;
@@ -66,8 +64,7 @@ public:
     }
 
     Result<bool> wait_ns(std::int64_t time_ns) override {
-        const timespec limit{static_cast<time_t>(time_ns / ns_per_s),
-                             static_cast<long>(time_ns % ns_per_s)};
+        const timespec limit = timespec_of(time_ns);
         const int ready = ::ppoll(polled_.data(), inputs_.size(), &limit, nullptr);
         if (ready < 0 && errno != EINTR)
             return machine_error(std::string("waiting for inputs failed: ") + std::strerror(errno));

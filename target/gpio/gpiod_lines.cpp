@@ -63,10 +63,6 @@ OpenChip open_named(const std::string& name, const std::string& devices) {
 
 }  // namespace
 
-Diagnostic machine_error(std::string message) {
-    return {Severity::error, ExitStatus::machine, std::move(message), {}};
-}
-
 std::string line_text(const LineRequest& request) {
     const auto* number = std::get_if<std::uint32_t>(&request.line);
     const std::string line =

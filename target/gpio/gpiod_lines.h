@@ -18,7 +18,6 @@ struct OpenChip {
     calls::ChipFacts facts;
 };
 
-Diagnostic machine_error(std::string message);
 // "axis.x.step: line 17 of gpiochip0"
 std::string line_text(const LineRequest& request);
 Result<OpenChip> open_chip(const LineRequest& request, const std::string& devices = "/dev");

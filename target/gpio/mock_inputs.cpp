@@ -25,8 +25,7 @@ Result<LineMask> MockInputs::read() {
 Result<std::size_t> MockInputs::collect(std::span<InputEdge> edges) {
     if (fault_)
         if (auto error = fault_()) return std::move(*error);
-    if (dropped_)
-        return Diagnostic{Severity::error, ExitStatus::machine, "edges of inputs were dropped", {}};
+    if (dropped_) return machine_error("edges of inputs were dropped");
     const std::size_t count = std::min(edges.size(), edges_.size());
     const auto end = edges_.begin() + static_cast<std::ptrdiff_t>(count);
     std::copy(edges_.begin(), end, edges.begin());

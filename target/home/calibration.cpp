@@ -16,20 +16,18 @@ using config::axis_x, config::axis_y, config::axis_z;
 
 constexpr double deg_per_turn = 360;
 
-Diagnostic refused(const std::string& message) {
-    return {Severity::error, ExitStatus::machine, message, {}};
-}
-
 Status check_possible(const config::Printer& printer, Calibration what) {
     const bool is_delta = printer.kinematics == config::Kinematics::delta;
     if (!printer.probe || !printer.probe->input)
-        return refused("printer \"" + printer.name + "\" has no probe.input to calibrate with");
+        return machine_error("printer \"" + printer.name +
+                             "\" has no probe.input to calibrate with");
     if (homable(printer).none())
-        return refused("printer \"" + printer.name + "\" has no endstops; it must be homed first");
+        return machine_error("printer \"" + printer.name +
+                             "\" has no endstops; it must be homed first");
     if (what == Calibration::delta && !is_delta)
-        return refused("--calibrate delta is for kinematics = \"delta\"");
+        return machine_error("--calibrate delta is for kinematics = \"delta\"");
     if (what == Calibration::probe && !printer.endstops[axis_z].input)
-        return refused(
+        return machine_error(
             "the probe homes z itself, so that its height cannot be found by it: print "
             "a first layer, and correct probe.offset_mm");
     return Done{};
@@ -81,14 +79,6 @@ std::vector<Spot> mesh_spots(const config::BedMesh& mesh) {
     return spots;
 }
 
-Spot probe_spot(const config::Printer& printer) {
-    const auto middle = [&](std::size_t axis) {
-        return (printer.axes[axis].min_mm + printer.axes[axis].max_mm) / 2;
-    };
-    const auto place = printer.probe->home_mm.value_or(std::array{middle(axis_x), middle(axis_y)});
-    return {place[0], place[1]};
-}
-
 std::vector<Spot> spots_of(const config::Printer& printer, Calibration what) {
     switch (what) {
         case Calibration::probe:
@@ -104,7 +94,7 @@ std::vector<Spot> spots_of(const config::Printer& printer, Calibration what) {
 Status check_reached(const config::Printer& printer, const std::vector<Spot>& spots) {
     for (const Spot& spot : spots)
         if (!config::probe_reaches(printer, spot.x_mm, spot.y_mm))
-            return refused(
+            return machine_error(
                 formatted("the probe cannot get to x %g, y %g: see mesh.area_mm and "
                           "probe.offset_mm",
                           spot.x_mm, spot.y_mm));
@@ -152,7 +142,8 @@ Result<std::string> calibrate_delta(config::Printer& printer,
                 carriage_endstop_mm(printer, tower) - carriages_mm[tower];
     }
     std::optional<config::Printer> found = fit_delta(printer, touches);
-    if (!found) return refused("no frame of a delta fits what was probed: check delta.arm_mm");
+    if (!found)
+        return machine_error("no frame of a delta fits what was probed: check delta.arm_mm");
     const double before_mm = worst_of(heights_of(printer, touches));
     const double after_mm = worst_of(heights_of(*found, touches));
     printer = std::move(*found);

@@ -20,18 +20,15 @@ namespace {
 
 using Push = std::vector<run::LineEvent>;
 
-Diagnostic not_fed(std::string message) {
-    return {Severity::error, ExitStatus::machine, std::move(message), {}};
-}
-
 Status check(const config::Printer& printer, const std::optional<double>& tool_c) {
     const auto& tool = printer.heaters[config::heater_tool];
-    if (!tool && tool_c) return not_fed("printer \"" + printer.name + "\" has no heater.tool");
+    if (!tool && tool_c)
+        return machine_error("printer \"" + printer.name + "\" has no heater.tool");
     if (!tool || (tool->min_extrude_c <= 0 && !tool_c)) return Done{};
     const double most_c = tool->guard.high_c - run::headroom_c;
     if (tool_c && *tool_c >= tool->min_extrude_c && *tool_c <= most_c) return Done{};
-    return not_fed(formatted("filament is moved with the tool at %g to %g °C: give --tool C",
-                             tool->min_extrude_c, most_c));
+    return machine_error(formatted("filament is moved with the tool at %g to %g °C: give --tool C",
+                                   tool->min_extrude_c, most_c));
 }
 
 // Heat and whoever may stop it: a tick of thermal::tick_s.
@@ -41,7 +38,7 @@ Status warm_up(thermal::HeatControl& control, const Tick& tick) {
     for (double waited_s = 0; !control.reached(config::heater_tool); waited_s += thermal::tick_s) {
         if (std::optional<Diagnostic> why = tick()) return std::move(*why);
         if (waited_s > run::longest_wait_s)
-            return not_fed("the tool has not become warm within an hour");
+            return machine_error("the tool has not become warm within an hour");
     }
     return Done{};
 }

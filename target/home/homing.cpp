@@ -5,7 +5,7 @@
 
 #include "base/text.h"
 #include "target/home/delta_fit.h"
-#include "target/home/touch.h"
+#include "target/home/probing.h"
 #include "target/moves/machine.h"
 
 namespace lyr::home {
@@ -111,14 +111,11 @@ Status lift(Mover& mover, ByAxes& machine, const config::Printer& printer,
 
 // Over the place where the probe homes z.
 Status go_to_probe(ByAxes& machine, const config::Printer& printer) {
-    const config::Probe& probe = *printer.probe;
-    const auto middle = [&](std::size_t axis) {
-        return (printer.axes[axis].min_mm + printer.axes[axis].max_mm) / 2;
-    };
-    const auto place = probe.home_mm.value_or(std::array{middle(axis_x), middle(axis_y)});
+    const std::array<double, 3>& offset = printer.probe->offset_mm;
+    const Spot place = probe_spot(printer);
     const std::array<double, 3>& at = machine.at_mm();
     const Result<Moved> moved = machine.move(
-        {place[0] - probe.offset_mm[0] - at[axis_x], place[1] - probe.offset_mm[1] - at[axis_y], 0},
+        {place.x_mm - offset[0] - at[axis_x], place.y_mm - offset[1] - at[axis_y], 0},
         std::hypot(printer.axes[axis_x].max_speed_mm_s, printer.axes[axis_y].max_speed_mm_s));
     return moved ? Status(Done{}) : moved.error();
 }
@@ -173,11 +170,8 @@ Result<Homed> home(Mover& mover, const config::Printer& printer, AxisSet axes) {
     if ((axes & ~possible).any() || axes.none()) {
         std::size_t axis = 0;
         while (axis < 2 && (possible[axis] || (axes.any() && !axes[axis]))) ++axis;
-        return Diagnostic{Severity::error,
-                          ExitStatus::machine,
-                          "printer \"" + printer.name + "\" has no axis." +
-                              std::string(config::axis_names[axis]) + ".endstop to home with",
-                          {}};
+        return machine_error("printer \"" + printer.name + "\" has no axis." +
+                             std::string(config::axis_names[axis]) + ".endstop to home with");
     }
     if (is_delta(printer)) axes.set();
     if (axes[axis_z] && z_by_probe(printer)) axes |= possible;

@@ -9,6 +9,7 @@
 #include "target/gpio/gpiod_chip.h"
 #include "target/gpio/gpiod_inputs.h"
 #include "target/home/simulated_machine.h"
+#include "target/home/touch.h"
 #include "target/moves/machine.h"
 #include "target/run/buttons.h"
 #include "target/run/real_time.h"
@@ -16,20 +17,15 @@
 namespace lyr::home {
 namespace {
 
-Diagnostic refused(std::string message) {
-    return {Severity::error, ExitStatus::machine, std::move(message), {}};
-}
-
 motion::Point start_of(const config::Printer& printer) {
     return {printer.start_mm[0], printer.start_mm[1], printer.start_mm[2]};
 }
 
 // Where an owner is told to push the head by hand.
 motion::Point middle_of(const config::Printer& printer) {
-    const auto middle_mm = [&](std::size_t axis) {
-        return (printer.axes[axis].min_mm + printer.axes[axis].max_mm) / 2;
-    };
-    return {middle_mm(config::axis_x), middle_mm(config::axis_y), middle_mm(config::axis_z)};
+    const auto& axes = printer.axes;
+    return {middle_mm(axes[config::axis_x]), middle_mm(axes[config::axis_y]),
+            middle_mm(axes[config::axis_z])};
 }
 
 Result<std::unique_ptr<gpio::InputLines>> open_inputs(const config::Printer& printer) {
@@ -77,12 +73,13 @@ Status check_place(const config::Printer& printer, const motion::Point& to) {
         const config::Axis& axis = printer.axes[i];
         if (at_mm[i] >= axis.min_mm && at_mm[i] <= axis.max_mm) continue;
         const std::string name(config::axis_names[i]);
-        return refused(formatted("%s would go to %g mm, and axis.%s.range_mm is %g to %g",
-                                 name.c_str(), at_mm[i], name.c_str(), axis.min_mm, axis.max_mm));
+        return machine_error(formatted("%s would go to %g mm, and axis.%s.range_mm is %g to %g",
+                                       name.c_str(), at_mm[i], name.c_str(), axis.min_mm,
+                                       axis.max_mm));
     }
     const double off_mm = std::hypot(to.x, to.y);
     if (printer.kinematics == config::Kinematics::delta && off_mm > printer.delta.reach_mm)
-        return refused(
+        return machine_error(
             formatted("the head would go %g mm from the middle, and delta.reach_mm is %g", off_mm,
                       printer.delta.reach_mm));
     return Done{};

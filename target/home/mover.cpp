@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <thread>
 
-#include "base/constants.h"
 #include "target/home/move_stream.h"
 #include "target/run/event_flow.h"
 #include "target/run/real_time.h"
@@ -45,17 +43,14 @@ void make(MoveStream& stream, run::EventFlow& flow, const std::atomic<bool>& fin
     flow.close();
 }
 
-// From the fastest of the moves to rest, twice as long as the slowest axis needs, as in a print.
+// From the fastest of the moves to rest.
 std::int64_t braking_ns(const config::Printer& machine, std::span<const motion::Move> moves) {
     double fastest_mm_s = 0;
     for (const motion::Move& move : moves) fastest_mm_s = std::max(fastest_mm_s, move.speed_mm_s);
-    double slowest_s = 0;
-    for (std::size_t i = 0; i < config::axis_e; ++i) {
-        const config::Axis& axis = machine.axes[i];
-        slowest_s = std::max(
-            slowest_s, std::min(fastest_mm_s, axis.max_speed_mm_s) / axis.max_acceleration_mm_s2);
-    }
-    return std::llround(2 * slowest_s * ns_per_s);
+    std::int64_t longest_ns = 0;
+    for (std::size_t i = 0; i < config::axis_e; ++i)
+        longest_ns = std::max(longest_ns, run::braking_ns(machine.axes[i], fastest_mm_s));
+    return longest_ns;
 }
 
 Diagnostic stopped() {
@@ -177,11 +172,8 @@ Result<Moved> Mover::outcome(const motion::StepCounts& before) const {
         if (!watch_->triggers()[i]) continue;
         const auto counts = tally_.counts_at(*watch_->triggers()[i]);
         if (!counts)
-            return Diagnostic{Severity::error,
-                              ExitStatus::machine,
-                              "contact " + std::string(config::contact_names[i]) +
-                                  " closed too long before the machine came to rest",
-                              {}};
+            return machine_error("contact " + std::string(config::contact_names[i]) +
+                                 " closed too long before the machine came to rest");
         moved.at_contact[i] = difference(*counts, before);
     }
     return moved;

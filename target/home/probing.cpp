@@ -46,20 +46,24 @@ Result<ByAxes::Positions> touch_here(ByAxes& machine, const config::Printer& pri
         {0, 0, sum[axis_z] + probe.lift_mm - machine.at_mm()[axis_z]}, probe.fast_mm_s);
     if (!lifted) return lifted.error();
     if (high_mm - low_mm <= probe.tolerance_mm) return sum;
-    return Diagnostic{Severity::error,
-                      ExitStatus::machine,
-                      formatted("approaches of the probe differ by %.3f mm, and probe.tolerance_mm "
-                                "is %g: clean the nozzle, or look for what is loose",
-                                high_mm - low_mm, probe.tolerance_mm),
-                      {}};
+    return machine_error(
+        formatted("approaches of the probe differ by %.3f mm, and probe.tolerance_mm "
+                  "is %g: clean the nozzle, or look for what is loose",
+                  high_mm - low_mm, probe.tolerance_mm));
 }
 
 }  // namespace
 
+Spot probe_spot(const config::Printer& printer) {
+    const auto place = printer.probe->home_mm.value_or(
+        std::array{middle_mm(printer.axes[axis_x]), middle_mm(printer.axes[axis_y])});
+    return {place[0], place[1]};
+}
+
 Result<ByAxes::Positions> touch_bed(ByAxes& machine, const config::Printer& printer,
                                     const Spot& spot) {
     if (!config::probe_reaches(printer, spot.x_mm, spot.y_mm))
-        return at(spot, {Severity::error, ExitStatus::machine, "the probe cannot get there", {}});
+        return at(spot, machine_error("the probe cannot get there"));
     const ByAxes::Positions& from = machine.at_mm();
     const Result<Moved> there = machine.move(
         {spot.x_mm - printer.probe->offset_mm[0] - from[axis_x],

@@ -18,6 +18,9 @@ struct Spot {
     double x_mm = 0, y_mm = 0;
 };
 
+// Where the probe homes z, and is calibrated.
+Spot probe_spot(const config::Printer& printer);
+
 // `machine` is that of bare_machine(), homed, its nozzle at a safe height.
 Result<ByAxes::Positions> touch_bed(ByAxes& machine, const config::Printer& printer,
                                     const Spot& spot);

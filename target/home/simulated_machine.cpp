@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/constants.h"
+#include "target/home/touch.h"
 #include "target/moves/machine.h"
 #include "target/run/line_layout.h"
 
@@ -39,8 +40,7 @@ motion::Point first_place(const config::Printer& printer) {
     const bool is_delta = printer.kinematics == config::Kinematics::delta;
     // Of a machine without end, near its start.
     const auto middle = [&](std::size_t axis) {
-        const config::Axis& limits = printer.axes[axis];
-        return is_delta ? 0 : (limits.min_mm + limits.max_mm) / 2;
+        return is_delta ? 0 : middle_mm(printer.axes[axis]);
     };
     const auto beside_mm = [&](std::size_t axis) {
         constexpr double most_mm = 30;

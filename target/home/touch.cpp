@@ -17,7 +17,7 @@ std::string name_of(const Target& target) {
 }
 
 Diagnostic failed(const Target& target, const std::string& what) {
-    return {Severity::error, ExitStatus::machine, name_of(target) + what, {}};
+    return machine_error(name_of(target) + what);
 }
 
 Diagnostic never(const Target& target, double reach_mm) {

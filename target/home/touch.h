@@ -22,6 +22,11 @@ struct Target {
     double tolerance_mm = 0;  // between two approaches
 };
 
+// Of its range.
+inline double middle_mm(const config::Axis& axis) {
+    return (axis.min_mm + axis.max_mm) / 2;
+}
+
 class ByAxes {
 public:
     using Positions = std::array<double, 3>;

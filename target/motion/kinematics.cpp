@@ -39,11 +39,8 @@ Status check(const Kinematics& kinematics) {
     const auto& steps = steps_per_mm(kinematics);
     for (std::size_t i = 0; i < axis_count; ++i)
         if (!(std::abs(steps[i]) <= most_steps_per_mm))
-            return Diagnostic{Severity::error,
-                              ExitStatus::machine,
-                              std::string("the steps per mm of axis ") + names[i] +
-                                  " must be a number up to 1e6 in size",
-                              {}};
+            return machine_error(std::string("the steps per mm of axis ") + names[i] +
+                                 " must be a number up to 1e6 in size");
     return Done{};
 }
 

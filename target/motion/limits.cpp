@@ -199,7 +199,7 @@ double turning_speed_mm_s(const Point& u, const Point& v, const Move& before, co
 }
 
 Diagnostic unfit(const std::string& what, const char* expected) {
-    return {Severity::error, ExitStatus::machine, what + " must be " + expected, {}};
+    return machine_error(what + " must be " + expected);
 }
 
 // No machine comes near, and squares of it are still far from overflow.

@@ -16,10 +16,6 @@ namespace {
 // Of the ring, that goes out at once when nothing in it is final: few passes over it per move.
 constexpr std::size_t share_to_release = 4;
 
-Diagnostic refused(const std::string& message) {
-    return {Severity::error, ExitStatus::machine, message, {}};
-}
-
 bool is_near(double value) {
     return std::abs(value) <= Planner::farthest_mm;  // false for what is not a number
 }
@@ -48,8 +44,8 @@ bool is_sound(const Arc& arc, const Path& path, double length_mm) {
 Result<Planner> Planner::create(const Limits& limits, std::size_t capacity) {
     if (const Status sound = motion::check(limits); !sound) return sound.error();
     if (capacity < share_to_release)
-        return refused("the planner's window must hold at least " +
-                       std::to_string(share_to_release) + " moves");
+        return machine_error("the planner's window must hold at least " +
+                             std::to_string(share_to_release) + " moves");
     return Planner(limits, capacity);
 }
 
@@ -71,7 +67,7 @@ Status Planner::push(const Move& move) {
     // An even ramp up and down takes no longer than twice this, the cruise between them counted in.
     const double ramp_s = length_mm / std::sqrt(next.limits.acceleration_mm_s2 * next.ramps_mm);
     if (!(length_mm / next.limits.speed_mm_s + 2 * ramp_s <= longest_s))
-        return refused("a move would take longer than 11 days: its speed is too low");
+        return machine_error("a move would take longer than 11 days: its speed is too low");
     next.corner_mm2_s2 = next.junction_mm2_s2 = corner_mm2_s2(next);
     next.dwell_ns = dwell_ns_;
 
@@ -87,18 +83,18 @@ Status Planner::push(const Move& move) {
 
 Status Planner::check(const Move& move, double length_mm) const {
     const Point &from = start_of(move.path), &to = end_of(move.path);
-    if (full()) return refused("the planner's window is full");
+    if (full()) return machine_error("the planner's window is full");
     if (!is_near(from) || !is_near(to) || !is_near(advance_of(move.path)) || !is_near(length_mm))
-        return refused("a move must stay within 100 m of the origin");
+        return machine_error("a move must stay within 100 m of the origin");
     if (!(move.speed_mm_s > 0) || !std::isfinite(move.speed_mm_s))
-        return refused("a move's speed must be a positive number of mm/s");
+        return machine_error("a move's speed must be a positive number of mm/s");
     if (!(move.acceleration_mm_s2 >= 0))
-        return refused("a move's acceleration must be 0 or a positive number of mm/s^2");
+        return machine_error("a move's acceleration must be 0 or a positive number of mm/s^2");
     const bool sound = std::visit(
         [&](const auto& shape) { return is_sound(shape, move.path, length_mm); }, move.path);
-    if (!sound) return refused("an arc's centre, radius and angles do not lead to its end");
+    if (!sound) return machine_error("an arc's centre, radius and angles do not lead to its end");
     if (begun_ && distance_mm(end_of(last_.path), from) > join_mm)
-        return refused("a move must start where the move before ends");
+        return machine_error("a move must start where the move before ends");
     return Done{};
 }
 

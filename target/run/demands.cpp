@@ -43,10 +43,7 @@ Diagnostic note(std::string message) {
 }
 
 Diagnostic impossible(std::string message) {
-    return {Severity::error,
-            ExitStatus::machine,
-            std::move(message) + "; --no-heat makes the motions cold",
-            {}};
+    return machine_error(std::move(message) + "; --no-heat makes the motions cold");
 }
 
 Status check_heat(const Demands& demands, const config::Printer& printer) {

@@ -49,6 +49,8 @@ struct ExecutorTiming {
     std::int64_t braking_ns = 0;  // from full speed to rest
 };
 
+// From that speed to rest.
+std::int64_t braking_ns(const config::Axis& axis, double speed_mm_s);
 ExecutorTiming executor_timing(const config::Printer& printer);
 
 // Requests to stop so far; a signal handler counts it up.

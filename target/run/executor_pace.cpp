@@ -23,14 +23,19 @@ constexpr double braking_margin = 2;
 
 }  // namespace
 
+std::int64_t braking_ns(const config::Axis& axis, double speed_mm_s) {
+    return std::llround(braking_margin * std::min(speed_mm_s, axis.max_speed_mm_s) /
+                        axis.max_acceleration_mm_s2 * ns_per_s);
+}
+
 ExecutorTiming executor_timing(const config::Printer& printer) {
     const config::PulseTiming& pulse = printer.pulse;
-    double longest_s = 0;
+    std::int64_t longest_ns = 0;
     for (const config::Axis& axis : printer.axes)
-        longest_s = std::max(longest_s, axis.max_speed_mm_s / axis.max_acceleration_mm_s2);
+        longest_ns = std::max(longest_ns, braking_ns(axis, axis.max_speed_mm_s));
     return {
         std::max({pulse.high_ns, pulse.low_ns, pulse.direction_setup_ns, pulse.direction_hold_ns}),
-        pulse.late_limit_ns, std::llround(braking_margin * longest_s * ns_per_s)};
+        pulse.late_limit_ns, longest_ns};
 }
 
 void Executor::begin_trip() {
@@ -119,7 +124,7 @@ Diagnostic Executor::too_late(std::int64_t late_ns) const {
         "an edge came %.3f ms late (the limit is pulse.late_limit_ms = %.3f): the printer has "
         "stopped, and its position is lost; free the processor or lower the speeds",
         static_cast<double>(late_ns) / 1e6, static_cast<double>(timing_.late_limit_ns) / 1e6);
-    return {Severity::error, ExitStatus::machine, text, {}};
+    return machine_error(text);
 }
 
 }  // namespace lyr::run

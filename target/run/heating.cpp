@@ -22,11 +22,8 @@ constexpr std::chrono::duration<double> tick{thermal::tick_s};
 constexpr int silent_ms = static_cast<int>(thermal::silent_s * 1'000);
 
 Diagnostic missing(const config::Printer& printer, const std::string& key) {
-    return {Severity::error,
-            ExitStatus::machine,
-            "printer \"" + printer.name + "\" has no " + key +
-                ": it is needed to heat (not to --simulate, and not with --no-heat)",
-            {}};
+    return machine_error("printer \"" + printer.name + "\" has no " + key +
+                         ": it is needed to heat (not to --simulate, and not with --no-heat)");
 }
 
 // What is collected on the way to a stage.
@@ -190,7 +187,7 @@ void tend(thermal::HeatControl& control, HeatAttendant& attendant,
 }
 
 Diagnostic diagnostic_of(const thermal::Trip& trip) {
-    return {Severity::error, ExitStatus::machine, trip.message, {}};
+    return machine_error(trip.message);
 }
 
 }  // namespace lyr::run

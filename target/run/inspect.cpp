@@ -57,7 +57,7 @@ Status check_range(const Box& box, const PathCurve& curve, const std::string& pa
                       "the path goes to %.3f mm on axis %s, and axis.%s.range_mm is %g to %g",
                       below ? box.low_mm[i] : box.high_mm[i], name.c_str(), name.c_str(),
                       axis.min_mm, axis.max_mm);
-        Diagnostic error{Severity::error, ExitStatus::machine, text, {}};
+        Diagnostic error = machine_error(text);
         error.where.file = path;
         error.where.layer = static_cast<int>(curve.layer) + 1;
         return error;

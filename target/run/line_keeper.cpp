@@ -34,7 +34,7 @@ struct Reply {
 };
 
 Diagnostic lost(const std::string& why) {
-    return {Severity::error, ExitStatus::machine, "the keeper of the heater lines " + why, {}};
+    return machine_error("the keeper of the heater lines " + why);
 }
 
 Reply reply_of(const Status& status) {
@@ -139,7 +139,7 @@ private:
         if (!send_whole(socket_, request) || !receive_whole(socket_, reply))
             return take_over(was_silent);
         if (reply.ok) return Done{};
-        return Diagnostic{Severity::error, ExitStatus::machine, reply.message.data(), {}};
+        return machine_error(reply.message.data());
     }
 
     // A keeper that was killed has left its lines as they were, one that hangs holds them so.
@@ -210,7 +210,7 @@ Result<std::unique_ptr<gpio::GpioChip>> keep_lines(std::size_t line_count, const
     ::close(sockets[0]);
     ::waitpid(keeper, nullptr, 0);
     if (!answered) return lost("ended at its start");
-    return Diagnostic{Severity::error, ExitStatus::machine, opened.message.data(), {}};
+    return machine_error(opened.message.data());
 }
 
 }  // namespace lyr::run

@@ -61,12 +61,9 @@ Result<std::vector<gpio::LineRequest>> line_requests(const config::Printer& prin
     for (std::size_t i = 0; i < axis_count; ++i) {
         const config::Axis& axis = printer.axes[i];
         if (!axis.step || !axis.direction)
-            return Diagnostic{Severity::error,
-                              ExitStatus::machine,
-                              "printer \"" + printer.name + "\" has no " +
-                                  key_of(i, axis.step ? "direction" : "step") +
-                                  ": a line is needed to print (not to --simulate)",
-                              {}};
+            return machine_error("printer \"" + printer.name + "\" has no " +
+                                 key_of(i, axis.step ? "direction" : "step") +
+                                 ": a line is needed to print (not to --simulate)");
         requests.push_back(line_request(key_of(i, "step"), *axis.step));
         requests.push_back(line_request(key_of(i, "direction"), *axis.direction, axis.invert));
     }

@@ -40,7 +40,7 @@ Status check_reach(const PathCurve& curve, const std::string& path,
                   "the path goes %.3f mm from the middle of the bed; the arms reach %g mm "
                   "(delta.reach_mm of the printer)",
                   reached_mm, printer.delta.reach_mm);
-    Diagnostic error{Severity::error, ExitStatus::machine, text.data(), {}};
+    Diagnostic error = machine_error(text.data());
     error.where.file = path;
     error.where.layer = static_cast<int>(curve.layer) + 1;
     return error;

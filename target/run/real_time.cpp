@@ -102,13 +102,10 @@ Status check_cpu(std::optional<unsigned> cpu) {
     if (error == 0) return Done{};
     std::string online;
     std::getline(std::ifstream("/sys/devices/system/cpu/online") >> std::ws, online);
-    return Diagnostic{Severity::error,
-                      ExitStatus::machine,
-                      "timing.cpu = " + std::to_string(*cpu) +
-                          ": the board has no such processor, or does not let this program run "
-                          "there; it has " +
-                          (online.empty() ? "others" : online),
-                      {}};
+    return machine_error("timing.cpu = " + std::to_string(*cpu) +
+                         ": the board has no such processor, or does not let this program run "
+                         "there; it has " +
+                         (online.empty() ? "others" : online));
 }
 
 }  // namespace lyr::run

@@ -17,17 +17,13 @@ constexpr double longest_swing_s = 30 * 60;
 // A room may be as warm, and without power no heater gets colder than that.
 constexpr double coldest_target_c = 30;
 
-Diagnostic failed(std::string message) {
-    return {Severity::error, ExitStatus::machine, std::move(message), {}};
-}
-
 Status check(const TuneJob& job) {
     const std::string name(config::heater_names[job.heater]);
     const auto& heater = job.printer.heaters[job.heater];
-    if (!heater) return failed("printer \"" + job.printer.name + "\" has no heater." + name);
+    if (!heater) return machine_error("printer \"" + job.printer.name + "\" has no heater." + name);
     const auto [low_c, high_c] = std::pair(heater->guard.low_c, heater->guard.high_c);
     if (job.target_c < coldest_target_c)
-        return failed(
+        return machine_error(
             formatted("heater %s cannot be tuned at %g °C: a heater must cool down below "
                       "its target, too, and a room is up to %g °C warm",
                       name.c_str(), job.target_c, coldest_target_c));
@@ -37,7 +33,7 @@ Status check(const TuneJob& job) {
                   "heater %s cannot be tuned at %g °C: its range_c is %g to %g, and the last %g °C "
                   "are for overshoot",
                   name.c_str(), job.target_c, low_c, high_c, headroom_c);
-    return failed(text);
+    return machine_error(text);
 }
 
 void begin(const TuneJob& job, thermal::HeatControl& control) {
@@ -63,12 +59,13 @@ std::optional<Result<thermal::TuneResult>> outcome(const TuneJob& job,
     if (control.trip()) return diagnostic_of(*control.trip());
     if (relay.finished()) {
         const auto result = relay.result();
-        if (!result) return failed("the temperature did not swing: it follows the heater too fast");
+        if (!result)
+            return machine_error("the temperature did not swing: it follows the heater too fast");
         return *result;
     }
     if (relay.swings() != swings.seen) swings = {relay.swings(), time_s};
     if (time_s - swings.since_s > longest_swing_s)
-        return failed(formatted(
+        return machine_error(formatted(
             "the temperature did not swing about %g °C for %g minutes and is "
             "%.1f °C: the heater is too weak for it, or does not get colder",
             job.target_c, longest_swing_s / 60, control.status(job.heater)->temperature_c));

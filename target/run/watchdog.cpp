@@ -19,12 +19,9 @@ namespace lyr::run {
 Result<Watchdog> Watchdog::open(const config::WatchdogSettings& settings) {
     const int descriptor = ::open(settings.device.c_str(), O_WRONLY | O_CLOEXEC);
     if (descriptor < 0)
-        return Diagnostic{Severity::error,
-                          ExitStatus::machine,
-                          "cannot open the watchdog " + settings.device + ": " +
-                              std::strerror(errno) +
-                              "; look at watchdog.device, and who else uses it",
-                          {}};
+        return machine_error("cannot open the watchdog " + settings.device + ": " +
+                             std::strerror(errno) +
+                             "; look at watchdog.device, and who else uses it");
     int timeout_s = static_cast<int>(std::lround(settings.timeout_s));
     // Some drivers have one timeout only.
     (void)::ioctl(descriptor, WDIOC_SETTIMEOUT, &timeout_s);

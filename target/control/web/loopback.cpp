@@ -30,11 +30,8 @@ bool listens(int socket, const Address& address) {
 }
 
 Diagnostic refused(std::uint16_t port, int error) {
-    return {
-        Severity::error,
-        ExitStatus::machine,
-        "the page cannot be served on port " + std::to_string(port) + ": " + std::strerror(error),
-        {}};
+    return machine_error("the page cannot be served on port " + std::to_string(port) + ": " +
+                         std::strerror(error));
 }
 
 }  // namespace

@@ -133,7 +133,7 @@ Status WebPage::Work::open() {
     if (!sockets) return sockets.error();
     const bool added = add(sockets->first) && (sockets->second < 0 || add(sockets->second));
     if (added) return Done{};
-    return Diagnostic{Severity::error, ExitStatus::machine, "the page's server does not start", {}};
+    return machine_error("the page's server does not start");
 }
 
 bool WebPage::Work::add(int socket) {
