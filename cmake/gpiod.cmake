@@ -41,3 +41,4 @@ if(NOT TARGET lyr_gpiod_${LYR_GPIOD_USED})
   message(FATAL_ERROR "libgpiod (LYR_GPIOD=${LYR_GPIOD}) is missing: install Debian's libgpiod-dev, or for 2.x beside an "
                       "installed 1.6 run: tools/setup --gpiod2 ${PROJECT_BINARY_DIR}/gpiod2")
 endif()
+set(LYR_GPIOD_USED ${LYR_GPIOD_USED} CACHE INTERNAL "the version of libgpiod that lyrrun is built with")

@@ -3,12 +3,12 @@
 #include "target/home/filament.h"
 
 #include <algorithm>
-#include <thread>
 
 #include "base/constants.h"
 #include "base/text.h"
 #include "target/gpio/gpiod_chip.h"
 #include "target/gpio/mock_chip.h"
+#include "target/home/beside.h"
 #include "target/run/demands.h"
 #include "target/run/real_time.h"
 #include "target/run/tended_heat.h"
@@ -89,7 +89,8 @@ Result<Fed> on_board(const config::Printer& printer, double feed_mm, double tool
     const Execute beside = [&](run::Executor& executor, const Push& push, run::StopRequests& stop) {
         Result<bool> executed = true;
         std::atomic<bool> finished{false};
-        std::thread edges([&] {
+        Beside threads{stop, finished};
+        threads.edges = std::thread([&] {
             Diagnostics told_before;
             run::take_precedence(printer.timing.cpu, told_before);
             executed = executor.execute(push);
@@ -98,7 +99,7 @@ Result<Fed> on_board(const config::Printer& printer, double feed_mm, double tool
         std::optional<Diagnostic> why;
         while (!why && !finished.load()) why = tick();
         if (why) ++stop;
-        edges.join();
+        threads.join();
         return why ? Result<bool>(std::move(*why)) : executed;
     };
     Result<Fed> fed =

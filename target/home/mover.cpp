@@ -4,6 +4,7 @@
 #include <chrono>
 #include <thread>
 
+#include "target/home/beside.h"
 #include "target/home/move_stream.h"
 #include "target/run/event_flow.h"
 #include "target/run/real_time.h"
@@ -136,10 +137,11 @@ Result<bool> Mover::execute_beside(run::Executor& executor, MoveStream& stream,
     Result<bool> executed = true;
     std::atomic<bool> finished{false};
     run::EventFlow flow(stop, finished);
-    std::thread maker([&] { make(stream, flow, finished); });
-    std::thread edges([&] {
-        Diagnostics warnings;
-        run::take_precedence(cpu_, warnings);
+    Beside threads{stop, finished};
+    threads.maker = std::thread([&] { make(stream, flow, finished); });
+    threads.edges = std::thread([&] {
+        Diagnostics told_before;
+        run::take_precedence(cpu_, told_before);
         executed = flow.drain(
             [&](std::span<const run::LineEvent> events) { return executor.execute(events); });
         finished.store(true);
@@ -154,8 +156,7 @@ Result<bool> Mover::execute_beside(run::Executor& executor, MoveStream& stream,
         stop += asked();
     };
     while (!finished.load()) look();
-    edges.join();
-    maker.join();
+    threads.join();
     if (flow.ran_dry()) return run::EventFlow::dry_error();
     const std::int64_t since_ns = clock_.now_ns();
     do look();

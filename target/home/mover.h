@@ -10,7 +10,7 @@
 //     once, and ends with status stopped; asked before, nothing moves. After a run the motors are on, and all lines
 //     but enable inactive, as the executor of a print expects them.
 //  4. On a board the lines are written by a thread of high priority, fed by another as in a print (run/event_flow.h), and
-//     this one watches; with virtual time all is done by this one, step by step.
+//     this one watches; what throws here ends them first. With virtual time all is done by this one, step by step.
 //  5. What the planner refuses is refused before anything moves. Edges are made while the machine moves, in bounded
 //     memory; those after the contact that stops it are never made, but for what the ring holds.
 

@@ -1,0 +1,83 @@
+// Contracts of target/home/beside.h on a board without a kernel (target/gpio/fake_board.h). What
+// changes the process is done in one of its own.
+
+#include <doctest/doctest.h>
+#include <pthread.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <functional>
+#include <system_error>
+
+#include "target/gpio/fake_board.h"
+#include "target/home/job.h"
+
+using namespace lyr;
+using namespace lyr::home;
+using namespace lyr::tests;
+
+namespace {
+
+config::Printer printer_on_board() {
+    board() = {};
+    board().chips.push_back({"gpiochip0", "test", std::vector<FakeLine>(28)});
+    config::Printer printer = config::generic_printer();
+    std::uint32_t line = 2;
+    for (config::Axis& axis : printer.axes) {
+        axis.step = config::Pin{"gpiochip0", line++};
+        axis.direction = config::Pin{"gpiochip0", line++};
+    }
+    for (auto& heater : printer.heaters) heater.reset();
+    printer.part_fan.reset();
+    printer.pulse.late_limit_ns = 10'000'000'000;  // the machine of a test may be busy
+    return printer;
+}
+
+bool holds_in_child(const std::function<bool()>& claim) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+        try {
+            ::_exit(claim() ? 0 : 1);
+        } catch (...) {
+            ::_exit(1);
+        }
+    }
+    int status = -1;
+    return ::waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+#if !defined __SANITIZE_ADDRESS__ && !defined __SANITIZE_THREAD__
+// Of the threads that are started from here on, one has room, and none beside it.
+bool leave_room_for_one_thread() {
+    constexpr std::size_t stack_bytes = std::size_t{256} << 20;
+    pthread_attr_t attributes;
+    ::pthread_attr_init(&attributes);
+    ::pthread_attr_setstacksize(&attributes, stack_bytes);
+    ::pthread_setattr_default_np(&attributes);
+    std::size_t used_pages = 0;
+    std::ifstream("/proc/self/statm") >> used_pages;
+    const rlim_t most =
+        used_pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE)) + stack_bytes * 7 / 4;
+    const rlimit room{most, most};
+    return ::setrlimit(RLIMIT_AS, &room) == 0;
+}
+#endif
+
+}  // namespace
+
+#if !defined __SANITIZE_ADDRESS__ && !defined __SANITIZE_THREAD__
+TEST_CASE("beside 2: where the second thread cannot be had, all ends and the lines are released") {
+    const Job job{printer_on_board()};
+    CHECK(holds_in_child([&] {
+        if (!leave_room_for_one_thread()) return false;
+        try {
+            (void)home::home(job, {}, motion::Point{20, 0, 0});
+        } catch (const std::system_error&) {
+            return board().requests == 0 && board().opened == 0;
+        }
+        return false;
+    }));
+}
+#endif
