@@ -85,6 +85,7 @@ Result<Fed> on_board(const config::Printer& printer, double feed_mm, double tool
     gpio::MonotonicClock clock;
     Diagnostics warnings;
     run::lock_memory(warnings);
+    run::try_precedence(printer.timing.cpu, warnings);
     const Tick tick = [&] { return (*heat)->tick(); };
     const Execute beside = [&](run::Executor& executor, const Push& push, run::StopRequests& stop) {
         Result<bool> executed = true;

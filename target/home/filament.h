@@ -7,6 +7,7 @@
 //     min_extrude_c or within headroom_c of the end of its range; a temperature for a tool that is not there.
 //  3. All guards watch throughout. One that fires, SIGINT, SIGTERM, SIGHUP and the emergency line bring the filament to
 //     rest. However it ends, all heaters and motors are off.
+//  4. What the kernel refuses of real time is a warning.
 
 #pragma once
 

@@ -47,6 +47,7 @@ Status on_board(const config::Printer& printer, Diagnostics& warnings, const Wor
     const Result<std::unique_ptr<gpio::GpioChip>> chip = gpio::open_gpiod_chip(*requests);
     if (!chip) return chip.error();
     run::lock_memory(warnings);
+    run::try_precedence(printer.timing.cpu, warnings);
     gpio::MonotonicClock clock;
     bool is_emergency = false;
     const auto stop = [&]() -> unsigned {

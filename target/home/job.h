@@ -8,6 +8,7 @@
 //  4. Before a print that resumes, the nozzle stands in the part: nothing moves sideways before it was lifted, and only x
 //     and y are homed, the height being that of the resumption. A delta, which homes upwards, finds its height too. The
 //     print begins where run::lifted() says.
+//  5. What the kernel refuses of real time is a warning.
 
 #pragma once
 

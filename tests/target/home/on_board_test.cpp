@@ -1,4 +1,4 @@
-// Contracts of target/home/beside.h on a board without a kernel (target/gpio/fake_board.h). What
+// Contracts of target/home/job.h, filament.h and beside.h on a board without a kernel (target/gpio/fake_board.h). What
 // changes the process is done in one of its own.
 
 #include <doctest/doctest.h>
@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "target/gpio/fake_board.h"
+#include "target/home/filament.h"
 #include "target/home/job.h"
 
 using namespace lyr;
@@ -48,6 +49,20 @@ bool holds_in_child(const std::function<bool()>& claim) {
     return ::waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
+// As a user without privileges.
+bool give_up_precedence() {
+    constexpr rlimit none{0, 0};
+    constexpr uid_t nobody = 65'534;
+    return ::setrlimit(RLIMIT_RTPRIO, &none) == 0 && ::setrlimit(RLIMIT_MEMLOCK, &none) == 0 &&
+           (::getuid() != 0 || ::setuid(nobody) == 0);
+}
+
+bool tells_refusal(const Diagnostics& warnings) {
+    return std::any_of(warnings.begin(), warnings.end(), [](const Diagnostic& warning) {
+        return warning.message.starts_with("real-time scheduling was refused");
+    });
+}
+
 #if !defined __SANITIZE_ADDRESS__ && !defined __SANITIZE_THREAD__
 // Of the threads that are started from here on, one has room, and none beside it.
 bool leave_room_for_one_thread() {
@@ -66,6 +81,24 @@ bool leave_room_for_one_thread() {
 #endif
 
 }  // namespace
+
+TEST_CASE("job 5: a jog that the kernel refuses real time warns of it, as a print does") {
+    const Job job{printer_on_board()};
+    CHECK(holds_in_child([&] {
+        if (!give_up_precedence()) return false;
+        const auto report = home::home(job, {}, motion::Point{1, 0, 0});
+        return report.ok() && tells_refusal(report->warnings);
+    }));
+}
+
+TEST_CASE("filament 4: a push of filament that the kernel refuses real time warns of it") {
+    const Job job{printer_on_board()};
+    CHECK(holds_in_child([&] {
+        if (!give_up_precedence()) return false;
+        const auto fed = feed(job, 1, std::nullopt);
+        return fed.ok() && tells_refusal(fed->warnings);
+    }));
+}
 
 #if !defined __SANITIZE_ADDRESS__ && !defined __SANITIZE_THREAD__
 TEST_CASE("beside 2: where the second thread cannot be had, all ends and the lines are released") {
