@@ -3,6 +3,7 @@
 #include "target/home/filament.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/constants.h"
 #include "base/text.h"
@@ -20,7 +21,12 @@ namespace {
 
 using Push = std::vector<run::LineEvent>;
 
-Status check(const config::Printer& printer, const std::optional<double>& tool_c) {
+Status check(const config::Printer& printer, double feed_mm, const std::optional<double>& tool_c) {
+    if (std::abs(feed_mm) > most_fed_mm)
+        return machine_error(
+            formatted("%g mm of filament at once are too many: move %g mm at the most, and go on "
+                      "with the next",
+                      feed_mm, most_fed_mm));
     const auto& tool = printer.heaters[config::heater_tool];
     if (!tool && tool_c)
         return machine_error("printer \"" + printer.name + "\" has no heater.tool");
@@ -43,9 +49,14 @@ Status warm_up(thermal::HeatControl& control, const Tick& tick) {
     return Done{};
 }
 
-Result<Push> push_of(const config::Printer& printer, double feed_mm, double speed_mm_s) {
+double speed_mm_s(const config::Printer& printer) {
+    return std::min(printer.filament.speed_mm_s, careful_mm_s);
+}
+
+// All of it, before there is heat: whoever plans looks after nothing else.
+Result<Push> push_of(const config::Printer& printer, double feed_mm) {
     const motion::Point here{printer.start_mm[0], printer.start_mm[1], printer.start_mm[2]};
-    const run::Leg leg{here, feed_mm, speed_mm_s};
+    const run::Leg leg{here, feed_mm, speed_mm_s(printer)};
     return run::plan_trip(printer, here, std::span(&leg, 1), run::line_layout(printer).enable);
 }
 
@@ -57,24 +68,21 @@ struct Place {
     Tick tick;
 };
 
-using Execute = std::function<Result<bool>(run::Executor&, const Push&, run::StopRequests&)>;
+using Execute = std::function<Result<bool>(run::Executor&, run::StopRequests&)>;
 
-Result<Fed> feed_at(const Place& place, const config::Printer& printer, double feed_mm,
-                    double tool_c, const Execute& execute) {
-    const double speed_mm_s = std::min(printer.filament.speed_mm_s, careful_mm_s);
-    const Result<Push> push = push_of(printer, feed_mm, speed_mm_s);
-    if (!push) return push.error();
+Result<Fed> feed_at(const Place& place, const config::Printer& printer, double tool_c,
+                    const Execute& execute) {
     place.control.set_target(config::heater_tool, tool_c);
     if (const Status warm = warm_up(place.control, place.tick); !warm) return warm.error();
     run::StopRequests stop{0};
     run::Executor executor(place.chip, place.clock, run::executor_timing(printer), stop);
-    const Result<bool> executed = execute(executor, *push, stop);
+    const Result<bool> executed = execute(executor, stop);
     if (!executed) return executed.error();
     if (const Status released = place.chip.release(); !released) return released.error();
-    return Fed{executor.positions()[config::axis_e], speed_mm_s, {}};
+    return Fed{executor.positions()[config::axis_e], speed_mm_s(printer), {}};
 }
 
-Result<Fed> on_board(const config::Printer& printer, double feed_mm, double tool_c) {
+Result<Fed> on_board(const config::Printer& printer, const Push& push, double tool_c) {
     if (const Status has = run::check_cpu(printer.timing.cpu); !has) return has.error();
     const Result<std::vector<gpio::LineRequest>> requests = run::line_requests(printer);
     if (!requests) return requests.error();
@@ -87,7 +95,7 @@ Result<Fed> on_board(const config::Printer& printer, double feed_mm, double tool
     run::lock_memory(warnings);
     run::try_precedence(printer.timing.cpu, warnings);
     const Tick tick = [&] { return (*heat)->tick(); };
-    const Execute beside = [&](run::Executor& executor, const Push& push, run::StopRequests& stop) {
+    const Execute beside = [&](run::Executor& executor, run::StopRequests& stop) {
         Result<bool> executed = true;
         std::atomic<bool> finished{false};
         Beside threads{stop, finished};
@@ -103,13 +111,12 @@ Result<Fed> on_board(const config::Printer& printer, double feed_mm, double tool
         threads.join();
         return why ? Result<bool>(std::move(*why)) : executed;
     };
-    Result<Fed> fed =
-        feed_at({**chip, clock, (*heat)->control(), tick}, printer, feed_mm, tool_c, beside);
+    Result<Fed> fed = feed_at({**chip, clock, (*heat)->control(), tick}, printer, tool_c, beside);
     if (fed) fed->warnings = std::move(warnings);
     return fed;
 }
 
-Result<Fed> simulated(const Job& job, double feed_mm, double tool_c) {
+Result<Fed> simulated(const Job& job, const Push& push, double tool_c) {
     thermal::SimulatedHeat heat(job.printer, job.faults);
     gpio::VirtualClock clock;
     gpio::MockChip chip(gpio::max_lines, clock, {});
@@ -118,23 +125,24 @@ Result<Fed> simulated(const Job& job, double feed_mm, double tool_c) {
         if (!heat.control().trip()) return std::nullopt;
         return run::diagnostic_of(*heat.control().trip());
     };
-    const Execute in_turn = [&](run::Executor& executor, const Push& push,
-                                run::StopRequests&) -> Result<bool> {
+    const Execute in_turn = [&](run::Executor& executor, run::StopRequests&) -> Result<bool> {
         for (double s = 0; s * ns_per_s < static_cast<double>(push.back().time_ns);
              s += thermal::tick_s)
             if (std::optional<Diagnostic> why = tick()) return std::move(*why);
         return executor.execute(push);
     };
-    return feed_at({chip, clock, heat.control(), tick}, job.printer, feed_mm, tool_c, in_turn);
+    return feed_at({chip, clock, heat.control(), tick}, job.printer, tool_c, in_turn);
 }
 
 }  // namespace
 
 Result<Fed> feed(const Job& job, double feed_mm, std::optional<double> tool_c) {
-    if (const Status possible = check(job.printer, tool_c); !possible) return possible.error();
+    if (const Status possible = check(job.printer, feed_mm, tool_c); !possible)
+        return possible.error();
+    const Result<Push> push = push_of(job.printer, feed_mm);
+    if (!push) return push.error();
     const double target_c = tool_c.value_or(0);
-    return job.simulate ? simulated(job, feed_mm, target_c)
-                        : on_board(job.printer, feed_mm, target_c);
+    return job.simulate ? simulated(job, *push, target_c) : on_board(job.printer, *push, target_c);
 }
 
 }  // namespace lyr::home

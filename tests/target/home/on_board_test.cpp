@@ -100,6 +100,19 @@ TEST_CASE("filament 4: a push of filament that the kernel refuses real time warn
     }));
 }
 
+TEST_CASE("filament 2: more filament than is planned in little memory and time is refused") {
+    Job job{printer_on_board()};
+    for (const double feed_mm : {1'000.5, -10'000.0}) {
+        const auto fed = feed(job, feed_mm, std::nullopt);
+        REQUIRE_FALSE(fed.ok());
+        CHECK(fed.error().status == ExitStatus::machine);
+        CHECK(fed.error().message.find("1000 mm at the most") != std::string::npos);
+    }
+    CHECK(board().opened == 0);
+    job.simulate = true;
+    CHECK(feed(job, 1'000, std::nullopt)->steps > 0);
+}
+
 #if !defined __SANITIZE_ADDRESS__ && !defined __SANITIZE_THREAD__
 TEST_CASE("beside 2: where the second thread cannot be had, all ends and the lines are released") {
     const Job job{printer_on_board()};
