@@ -72,9 +72,8 @@ std::string Dispatcher::answer(std::string_view line, Subscription* subscription
 
 std::string Dispatcher::carry_out(const std::string& id, const Commands& commands) {
     std::optional<Refusal> refusal = objection(commands);
-    for (const run::Command& command : commands)
-        if (!refusal && !print_.post(command))
-            refusal = {"null", ErrorCode::busy, "too many commands wait already"};
+    if (!refusal && !print_.post(commands))
+        refusal = {"null", ErrorCode::busy, "too many commands wait already"};
     if (!refusal) return done_line(id);
     refusal->id = id;
     return refusal_line(*refusal);

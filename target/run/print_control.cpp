@@ -5,20 +5,23 @@
 
 namespace lyr::run {
 
-bool PrintControl::post(const Command& command) {
+bool PrintControl::post(std::span<const Command> commands) {
     // As after a second Ctrl-C: the pulse that is out ends, and nothing follows.
     constexpr int at_once = 2;
-    const bool is_emergency = std::holds_alternative<EmergencyStop>(command);
+    const auto emergency = std::ranges::find_if(commands, [](const Command& command) {
+        return std::holds_alternative<EmergencyStop>(command);
+    });
+    const bool is_emergency = emergency != commands.end();
     if (is_emergency) stop_requests_ += at_once;
     const std::lock_guard lock(mutex_);
     if (is_emergency) {
         // One is enough, however often it is asked for.
         if (waiting_.empty() || !std::holds_alternative<EmergencyStop>(waiting_.front()))
-            waiting_.push_front(command);
+            waiting_.push_front(*emergency);
         return true;
     }
-    if (waiting_.size() >= most_waiting) return false;
-    waiting_.push_back(command);
+    if (waiting_.size() + commands.size() > most_waiting) return false;
+    for (const Command& command : commands) waiting_.push_back(command);
     return true;
 }
 

@@ -4,7 +4,7 @@
 //
 // Contract
 //  1. Commands come out in the order in which they were posted, each once. post() never waits for the print; false:
-//     `most_waiting` of them wait already, and this one is not taken.
+//     more than `most_waiting` would wait then, and none of those posted together is taken.
 //  2. An emergency stop is always taken, and stops the motors before post() returns to its caller or a step later; the
 //     print serves it before all other commands.
 //  3. status() is what was published last, as a whole.
@@ -16,6 +16,7 @@
 #include <deque>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -67,7 +68,8 @@ class PrintControl {
 public:
     static constexpr std::size_t most_waiting = 64;
 
-    bool post(const Command& command);
+    bool post(const Command& command) { return post(std::span(&command, 1)); }
+    bool post(std::span<const Command> commands);
     PrintStatus status() const;
 
     // For the print.

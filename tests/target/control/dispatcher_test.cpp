@@ -62,6 +62,17 @@ TEST_CASE("dispatcher: greeting and status are JSON, whatever names hold") {
     CHECK(event["status"] == status);
 }
 
+TEST_CASE("dispatcher 2: a set of several for which the queue has too little room sets none") {
+    Scene scene;
+    for (std::size_t i = 1; i < run::PrintControl::most_waiting; ++i)
+        REQUIRE(scene.code(R"({"command":"set","fan":0.5})") == "ok");
+    CHECK(scene.code(R"({"command":"set","tool_c":215,"bed_c":60})") == "busy");
+    std::size_t waiting = 0;
+    for (; const auto command = scene.print.take(); ++waiting)
+        CHECK(*command == run::Command(run::SetFan{0.5}));
+    CHECK(waiting == run::PrintControl::most_waiting - 1);
+}
+
 TEST_CASE("dispatcher 1: an accepted command is on its way to the print, in its order") {
     Scene scene;
     CHECK(scene.code(R"({"command":"set","speed":1.5,"tool_c":200})") == "ok");
