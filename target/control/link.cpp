@@ -1,5 +1,6 @@
 #include "target/control/link.h"
 
+#include <fcntl.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -18,6 +19,10 @@ namespace {
 
 // What a server says fits many times; one that never ends a line is none of ours.
 constexpr std::size_t most_held_bytes = std::size_t{1} << 18;
+// Its socket is there before the file is read, and served from the print's begin on.
+constexpr const char* no_greeting =
+    "lyrrun does not answer yet: it may still be checking a large file; ask again later, or end "
+    "lyrrun with Ctrl-C or SIGTERM";
 
 }  // namespace
 
@@ -26,18 +31,32 @@ Diagnostic Link::problem(const std::string& what) const {
 }
 
 Result<Link> Link::open(const std::string& path) {
-    Link link(path, ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
-    if (Status connected = link.connect(); !connected) return connected.error();
-    const Result<Answer> first = link.next();
-    if (!first) return first.error();
-    if (const auto* refused = std::get_if<Refused>(&*first)) return link.problem(refused->message);
-    const auto* greeting = std::get_if<Greeting>(&*first);
-    if (!greeting) return link.problem("this is no control socket of lyrrun");
-    if (greeting->protocol != protocol_version)
-        return link.problem(formatted("lyrrun speaks version %d of the protocol, this is for %d",
-                                      greeting->protocol, protocol_version));
-    link.greeting_ = *greeting;
+    Result<Link> link = reach(path);
+    if (!link) return link;
+    const Result<bool> greeted = link->take_greeting(patience);
+    if (!greeted) return greeted.error();
+    if (!*greeted) return link->problem(no_greeting);
     return link;
+}
+
+Result<Link> Link::reach(const std::string& path) {
+    Link link(path, ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+    if (Status connected = link.connect(); !connected) return connected.error();
+    return link;
+}
+
+Result<bool> Link::take_greeting(std::chrono::milliseconds wait) {
+    const Result<std::optional<Answer>> first = next_within(wait);
+    if (!first) return first.error();
+    if (!*first) return false;
+    if (const auto* refused = std::get_if<Refused>(&**first)) return problem(refused->message);
+    const auto* greeting = std::get_if<Greeting>(&**first);
+    if (!greeting) return problem("this is no control socket of lyrrun");
+    if (greeting->protocol != protocol_version)
+        return problem(formatted("lyrrun speaks version %d of the protocol, this is for %d",
+                                 greeting->protocol, protocol_version));
+    greeting_ = *greeting;
+    return true;
 }
 
 Link::Link(Link&& other) noexcept
@@ -54,7 +73,12 @@ Link::~Link() {
 Status Link::connect() {
     const auto address = SocketAddress::of(path_);
     if (!address) return problem("the socket's name is too long");
-    if (::connect(socket_, address->get(), SocketAddress::size) == 0) return Done{};
+    // Without waiting: many may be asking already.
+    if (::connect(socket_, address->get(), SocketAddress::size) == 0) {
+        (void)::fcntl(socket_, F_SETFL, 0);
+        return Done{};
+    }
+    if (errno == EAGAIN) return problem(no_greeting);
     if (errno == ENOENT || errno == ECONNREFUSED)
         return problem("no printer is at work here: lyrrun makes this socket when it prints");
     if (errno == EACCES)

@@ -2,6 +2,7 @@
 //
 // Contract
 //  1. open() has the greeting of a server that speaks this protocol; the error (status machine) says what it found else.
+//     reach() waits for nothing, and take_greeting() no longer than it is told to.
 //  2. No answer within patience is an error, as is the end of the connection; after that, all else is.
 
 #pragma once
@@ -20,6 +21,10 @@ public:
     static constexpr std::chrono::seconds patience{5};
 
     static Result<Link> open(const std::string& path);
+    // Connected, and not greeted yet.
+    static Result<Link> reach(const std::string& path);
+    // False: it has not come yet.
+    Result<bool> take_greeting(std::chrono::milliseconds wait);
 
     Link(Link&& other) noexcept;
     Link& operator=(Link&&) = delete;

@@ -17,20 +17,34 @@ constexpr const char* subscribe = R"({"command":"subscribe","interval_s":0.25})"
 
 }  // namespace
 
-void Relay::connect() {
+void Relay::look() {
     const Clock::time_point now = Clock::now();
     if (now < connect_from_) return;
     connect_from_ = now + between_prints;
     for (const std::string& place : socket_.empty() ? sockets() : std::vector{socket_}) {
-        Result<Link> link = Link::open(place);
-        if (!link || !link->send(subscribe)) continue;
-        file_ = link->greeting().file;
-        link_.emplace(std::move(*link));
-        ++print_;
-        told_.reset();
-        history_ = History();
-        return;
+        if (silent_.contains(place)) continue;
+        if (Result<Link> link = Link::reach(place)) silent_.emplace(place, std::move(*link));
     }
+}
+
+void Relay::connect() {
+    look();
+    for (auto at = silent_.begin(); at != silent_.end() && !link_;) {
+        Link& link = at->second;
+        const Result<bool> greeted = link.take_greeting({});
+        if (greeted && !*greeted) {
+            ++at;
+            continue;
+        }
+        if (greeted && link.send(subscribe)) link_.emplace(std::move(link));
+        at = silent_.erase(at);
+    }
+    if (!link_) return;
+    silent_.clear();
+    file_ = link_->greeting().file;
+    ++print_;
+    told_.reset();
+    history_ = History();
 }
 
 void Relay::take(const Answer& answer) {

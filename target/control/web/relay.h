@@ -1,7 +1,8 @@
 // The print that the page shows, through its control socket. Prints come and go; the page stays.
 //
 // Contract
-//  1. serve() connects where there is no connection, and takes the statuses that have come; it waits for nothing.
+//  1. serve() connects where there is no connection, and takes the statuses that have come; it waits for nothing: a
+//     server that has not greeted yet, as while lyrrun checks a large file, is no print until it has.
 //  2. answer() hands a request on and waits for its answer, for Link::patience at the most. A request is one line:
 //     line ends in it are spaces.
 //  3. print() counts the prints that were connected to; what is told of is that print, also after its end.
@@ -9,6 +10,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -25,8 +27,11 @@ public:
     void serve();
     std::string answer(std::string_view request);
 
-    // Below 0: there is no print.
-    int descriptor() const { return link_ ? link_->descriptor() : -1; }
+    // Of what comes next; below 0: there is no print.
+    int descriptor() const {
+        if (link_) return link_->descriptor();
+        return silent_.empty() ? -1 : silent_.begin()->second.descriptor();
+    }
     bool is_connected() const { return link_.has_value(); }
     std::uint64_t print() const { return print_; }
     const std::optional<Told>& told() const { return told_; }
@@ -35,11 +40,14 @@ public:
     const History& history() const { return history_; }
 
 private:
+    // Reaches every place from which no greeting is awaited yet.
+    void look();
     void connect();
     void take(const Answer& answer);
 
     std::string socket_;
     std::optional<Link> link_;
+    std::map<std::string, Link> silent_;  // have not greeted yet
     std::optional<Told> told_;
     std::string file_;
     History history_;

@@ -82,6 +82,26 @@ TEST_CASE("answer 1: any bytes give an answer or none") {
         CHECK_FALSE(read_answer(line));
 }
 
+TEST_CASE("link 2: lyrrun that is still checking a large file is said to be, and so if many ask") {
+    const std::string path = socket_path("large");
+    const auto listener = Listener::open(path);
+    REQUIRE(listener.ok());
+    const auto is_told = [](const Result<Link>& link) {
+        return !link.ok() && link.error().message.find("a large file") != std::string::npos;
+    };
+    CHECK(is_told(Link::open(path)));
+    std::vector<Link> waiting;
+    for (bool full = false; !full;) {
+        Result<Link> link = Link::reach(path);
+        full = !link.ok();
+        if (full)
+            CHECK(is_told(link));
+        else
+            waiting.push_back(std::move(*link));
+        REQUIRE(waiting.size() < 100);
+    }
+}
+
 TEST_CASE("link 1: asks and is answered; what is no server of this protocol is told") {
     const std::string path = socket_path("link");
     run::PrintControl print;

@@ -312,6 +312,34 @@ TEST_CASE("relay 3: the page stays when the print goes, and shows the next one")
     CHECK(json::parse(scene.command(with_token).body)["ok"] == true);
 }
 
+TEST_CASE("relay 1: a print that does not greet yet does not freeze the page") {
+    Scene scene;
+    scene.server.reset();
+    REQUIRE(scene.becomes([&] { return scene.status_now()["connected"] == false; }));
+    auto listener = Listener::open(socket_path("web"));
+    REQUIRE(listener.ok());
+    // Longer than until the next look for prints.
+    const auto from = std::chrono::steady_clock::now();
+    std::chrono::steady_clock::duration longest{};
+    for (auto now = from; now - from < std::chrono::seconds(3);) {
+        CHECK(scene.status_now()["connected"] == false);
+        const auto answered = std::chrono::steady_clock::now();
+        longest = std::max(longest, answered - now);
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        now = std::chrono::steady_clock::now();
+    }
+    CHECK(longest < std::chrono::milliseconds(1500));
+    // One connection waits all the time.
+    std::size_t waiting = 0;
+    for (int client = listener->accept(); client >= 0; client = listener->accept()) {
+        ++waiting;
+        ::close(client);
+    }
+    CHECK(waiting == 1);
+    scene.server.emplace(std::move(*listener), scene.dispatcher);
+    CHECK(scene.becomes([&] { return scene.status_now()["print"] == 2; }));
+}
+
 TEST_CASE("history: an hour is kept; who was away gets what is left") {
     History history;
     run::PrintStatus status;
