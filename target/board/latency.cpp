@@ -1,4 +1,4 @@
-// Times are kept and sorted: a hundred thousand of them are a second's worth of memory, and exact.
+// Times are counted in buckets as fine as the figures that are told: an hour has forty million of them.
 
 #include "target/board/latency.h"
 
@@ -53,7 +53,7 @@ private:
 };
 
 struct Samples {
-    std::vector<std::int64_t> asleep_ns, awake_ns, write_ns;
+    Times asleep, awake, write;
 };
 
 class Measurement {
@@ -63,20 +63,14 @@ public:
     Result<Samples> run(double seconds) {
         const std::int64_t half_ns = std::llround(seconds * ns_per_s / 2);
         const std::int64_t end_ns = clock_.now_ns() + 2 * half_ns;
-        const auto room = [half_ns](std::int64_t gap_ns) {
-            return static_cast<std::size_t>(half_ns / gap_ns + 1);
-        };
-        samples_.asleep_ns.reserve(room(sparse_ns));
-        samples_.awake_ns.reserve(room(dense_ns));
-        samples_.write_ns.reserve(room(sparse_ns) + room(dense_ns));
         // Each kind has its half, however short the whole is.
         const std::int64_t turn_ns = std::min(run_ns, half_ns);
         // There is time for one more wait of either kind.
         const auto time_left = [&] { return clock_.now_ns() + sparse_ns < end_ns; };
         for (bool dense = false; time_left(); dense = !dense) {
             const std::int64_t until_ns = std::min(end_ns, clock_.now_ns() + turn_ns);
-            if (Status done = dense ? wait(dense_ns, until_ns, samples_.awake_ns)
-                                    : wait(sparse_ns, until_ns, samples_.asleep_ns);
+            if (Status done = dense ? wait(dense_ns, until_ns, samples_.awake)
+                                    : wait(sparse_ns, until_ns, samples_.asleep);
                 !done)
                 return done.error();
         }
@@ -84,15 +78,15 @@ public:
     }
 
 private:
-    Status wait(std::int64_t gap_ns, std::int64_t until_ns, std::vector<std::int64_t>& late_ns) {
+    Status wait(std::int64_t gap_ns, std::int64_t until_ns, Times& late) {
         for (std::int64_t due_ns = clock_.now_ns() + gap_ns; due_ns <= until_ns;) {
             const std::int64_t now_ns = clock_.wait_until_ns(due_ns);
-            late_ns.push_back(now_ns - due_ns);
+            late.add(now_ns - due_ns);
             if (chip_) {
                 if (Status written = chip_->write(gpio::all_lines(chip_->line_count()), 0);
                     !written)
                     return written;
-                samples_.write_ns.push_back(clock_.now_ns() - now_ns);
+                samples_.write.add(clock_.now_ns() - now_ns);
             }
             // As in a print, a late one makes the next ones no sooner.
             due_ns = now_ns + gap_ns;
@@ -104,18 +98,6 @@ private:
     gpio::GpioChip* chip_;
     Samples samples_;
 };
-
-std::vector<std::uint64_t> histogram_of(const Samples& samples) {
-    std::vector<std::uint64_t> buckets;
-    for (const auto* times : {&samples.asleep_ns, &samples.awake_ns})
-        for (const std::int64_t late_ns : *times) {
-            const auto late_us = static_cast<std::uint64_t>(late_ns / 1'000);
-            const auto bucket = static_cast<std::size_t>(std::bit_width(late_us));
-            if (bucket >= buckets.size()) buckets.resize(bucket + 1);
-            ++buckets[bucket];
-        }
-    return buckets;
-}
 
 std::string row(const char* what, const Spread& spread) {
     return formatted("# %-28s %9zu  %10.1f %10.1f %10.1f\n", what, spread.count,
@@ -137,12 +119,45 @@ std::optional<Diagnostic> warning_of(std::int64_t worst_ns, std::int64_t limit_n
 
 }  // namespace
 
-Spread spread_of(std::vector<std::int64_t>& times_ns) {
-    if (times_ns.empty()) return {};
-    std::sort(times_ns.begin(), times_ns.end());
-    const std::size_t count = times_ns.size();
+std::size_t Times::bucket_of(std::uint64_t time_ns) {
+    const int shift = std::max(0, static_cast<int>(std::bit_width(time_ns)) - exact_bits);
+    return static_cast<std::size_t>(shift) * half + static_cast<std::size_t>(time_ns >> shift);
+}
+
+std::int64_t Times::end_ns(std::size_t bucket) {
+    const std::size_t shift = bucket < half ? 0 : bucket / half - 1;
+    return static_cast<std::int64_t>(((bucket - shift * half + 1) << shift) - 1);
+}
+
+void Times::add(std::int64_t time_ns) {
+    const auto longest_ns = std::int64_t{1} << most_bits;
+    ++counts_[bucket_of(
+        static_cast<std::uint64_t>(std::clamp<std::int64_t>(time_ns, 0, longest_ns - 1)))];
+    ++count_;
+    worst_ns_ = std::max(worst_ns_, time_ns);
+}
+
+std::int64_t Times::place_from_above(std::uint64_t number) const {
+    std::size_t bucket = counts_.size();
+    for (std::uint64_t above = 0; bucket > 0 && above < number;) above += counts_[--bucket];
+    return std::min(end_ns(bucket), worst_ns_);
+}
+
+Spread Times::spread() const {
     constexpr std::size_t rare = 10'000;
-    return {count, times_ns[count / 2], times_ns[count - 1 - count / rare], times_ns.back()};
+    return {count_, place_from_above(count_ - count_ / 2), place_from_above(count_ / rare + 1),
+            worst_ns_};
+}
+
+void Times::add_to(std::vector<std::uint64_t>& histogram) const {
+    for (std::size_t i = 0; i < counts_.size(); ++i) {
+        if (counts_[i] == 0) continue;
+        // A power of two of microseconds is where a bucket begins.
+        const auto us = static_cast<std::uint64_t>(end_ns(i) / 1'000);
+        const auto wide = static_cast<std::size_t>(std::bit_width(us));
+        if (wide >= histogram.size()) histogram.resize(wide + 1);
+        histogram[wide] += counts_[i];
+    }
 }
 
 Result<LatencyReport> measure_latency(const LatencyJob& job, gpio::Clock& clock,
@@ -151,10 +166,10 @@ Result<LatencyReport> measure_latency(const LatencyJob& job, gpio::Clock& clock,
     if (!samples) return samples.error();
     LatencyReport report;
     report.printer = job.printer.name;
-    report.histogram = histogram_of(*samples);
-    report.asleep = spread_of(samples->asleep_ns);
-    report.awake = spread_of(samples->awake_ns);
-    if (chip) report.write = spread_of(samples->write_ns);
+    for (const Times* times : {&samples->asleep, &samples->awake}) times->add_to(report.histogram);
+    report.asleep = samples->asleep.spread();
+    report.awake = samples->awake.spread();
+    if (chip) report.write = samples->write.spread();
     config::Printer measured = job.printer;
     measured.timing.late_ns = std::max(report.asleep.rare_ns, report.awake.rare_ns);
     if (report.write) measured.timing.write_ns = report.write->rare_ns;
