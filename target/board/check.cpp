@@ -194,7 +194,17 @@ void Check::kernel() {
                            " is not PREEMPT_RT: it wakes a thread late now and then; "
                            "install one (Debian: linux-image-rt-*), or keep speeds low");
     const std::optional<std::string> runtime = word("/proc/sys/kernel/sched_rt_runtime_us");
-    if (runtime && *runtime != "-1")
+    const std::string online = word("/sys/devices/system/cpu/online").value_or("");
+    const bool is_alone = !online.empty() && online.find_first_of(",-") == std::string::npos;
+    if (is_alone && runtime == "-1")
+        fail("processor",
+             "there is one, and busy motors leave nothing of it to the thread that guards the "
+             "heaters: sysctl kernel.sched_rt_runtime_us=950000");
+    else if (is_alone)
+        warn("processor",
+             "there is one: busy motors keep the thread that guards the heaters waiting for up to "
+             "a second, and steps come late then; a board with two is better");
+    else if (runtime && *runtime != "-1")
         warn("kernel", "stops a real-time thread that is busy for " + *runtime +
                            " us of a second, and with it the print at full speed: "
                            "sysctl kernel.sched_rt_runtime_us=-1");

@@ -7,7 +7,8 @@
 //  2. No line is held, no file is written, no channel is switched.
 //  3. A line, channel or sensor that two keys lead to by different names is an error.
 //  4. Files of /sys, /proc and /dev are looked for below Board::root, so that any board can be described by a folder.
-//  5. Whatever is in those files, there is no crash.
+//  5. A single processor is a warning, and an error where the kernel lets a real-time thread have all of it.
+//  6. Whatever is in those files, there is no crash.
 
 #pragma once
 

@@ -125,6 +125,23 @@ TEST_CASE("check 1, 3: lines that are missing, held or two keys' are errors by t
     CHECK(text_of(findings).find("error    axis.e.enable: ") != std::string::npos);
 }
 
+TEST_CASE("check 5: on one processor the heaters' guards would starve beside busy motors") {
+    const Folder folder;
+    const auto found = [&](const char* online, const char* runtime_us) {
+        folder.put("sys/devices/system/cpu/online", online);
+        folder.put("proc/sys/kernel/sched_rt_runtime_us", runtime_us);
+        return check(good_printer(), good_board(folder));
+    };
+    CHECK(says(problem(found("0\n", "-1\n"), "processor"), Severity::error,
+               "sched_rt_runtime_us=950000"));
+    const auto alone = found("0\n", "950000\n");
+    CHECK(says(problem(alone, "processor"), Severity::warning, "up to a second"));
+    // Nor is the advice for more of them given.
+    CHECK(text_of(alone).find("sched_rt_runtime_us") == std::string::npos);
+    for (const char* several : {"0-3\n", "0,2\n"})
+        CHECK(worst(found(several, "-1\n")) == Severity::note);
+}
+
 TEST_CASE("check 1: sensors that are missing, not plugged in or not believable are told") {
     const Folder folder;
     const auto tool = [&](const std::string& raw) {
@@ -251,7 +268,7 @@ TEST_CASE("check 1: that journals have no place was found by the first loss of p
     std::filesystem::permissions(folder.root() + "/var/lyr", std::filesystem::perms::owner_all);
 }
 
-TEST_CASE("check 5: any bytes in any file are findings") {
+TEST_CASE("check 6: any bytes in any file are findings") {
     const Folder folder;
     std::mt19937 random(8);
     for (int run = 0; run < 50; ++run) {
