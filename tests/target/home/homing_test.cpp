@@ -174,6 +174,28 @@ TEST_CASE("homing: inputs that fail end it with their message") {
     check_failure(home::home(mover, printer, home::homable(printer)), "the chip is gone");
 }
 
+TEST_CASE("homing 5: a z axis that is homed first, downwards, is lifted before") {
+    config::Printer printer = machine_of(Kinematics::cartesian);
+    printer.homing.order = {config::axis_z, config::axis_x, config::axis_y};
+    printer.simulated.head_mm = {100, 100, 50};
+    home::SimulatedMachine machine(printer, {});
+    HighestPlace chip(machine);
+    home::Mover mover(printer, chip, machine.clock(), &machine.inputs(), nullptr);
+    const auto homed = home::home(mover, printer, home::homable(printer));
+    REQUIRE_MESSAGE(homed.ok(), homed.error().message);
+    CHECK(chip.highest_mm() >= 50 + printer.homing.lift_mm);
+}
+
+TEST_CASE("homing 5: a z axis that homes upwards after others is lifted before they go sideways") {
+    config::Printer printer = machine_of(Kinematics::cartesian);
+    printer.endstops[config::axis_z].at_high_end = true;
+    printer.simulated.head_mm = {120, 100, 10};
+    printer.simulated.bumps = {{60, 100, 10 + printer.homing.lift_mm / 2, 20}};
+    Scene scene(printer);
+    REQUIRE(scene.home().ok());
+    CHECK(scene.machine.lowest_mm() > 0);
+}
+
 TEST_CASE("homing 6: the way to a place goes upwards first and downwards last") {
     config::Printer printer = machine_of(Kinematics::cartesian);
     printer.simulated.head_mm = {10, 10, 5};
@@ -195,14 +217,23 @@ TEST_CASE(
         home::Mover mover(printer, chip, clock, nullptr, nullptr);
         REQUIRE(home::travel(mover, printer, {10, 10, 5}, {40, 25, 9}).ok());
         for (std::size_t motor = 0; motor < 3; ++motor) {
+            const double play = printer.backlash_mm[motor] * printer.axes[motor].steps_per_mm;
+            // Of the motor, and of the axis, which may be behind it by the play or not.
+            double at = 0, pushed = -play, pulled = 0;
             bool upwards = true;
             gpio::LineMask before = 0;
             for (const gpio::LineWrite& write : writes) {
-                if (write.levels & ~before & run::step_bit(motor))
+                if (write.levels & ~before & run::step_bit(motor)) {
                     upwards = (write.levels & run::direction_bit(motor)) != 0;
+                    at += upwards ? 1 : -1;
+                    for (double* axis : {&pushed, &pulled})
+                        *axis = std::clamp(*axis, at - play, at);
+                }
                 before = write.levels;
             }
             CHECK_FALSE(upwards);
+            CHECK(pushed == at);
+            CHECK(pulled == at);
         }
     }
     config::Printer printer = machine_of(Kinematics::cartesian);
