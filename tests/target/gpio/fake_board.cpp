@@ -1,8 +1,14 @@
 #include "target/gpio/fake_board.h"
 
 #include <cerrno>
+#include <mutex>
 
 namespace lyr::tests {
+namespace {
+
+std::mutex wires;
+
+}  // namespace
 
 FakeBoard& board() {
     static FakeBoard one;
@@ -40,10 +46,12 @@ bool FakeBoard::take(FakeChip& chip, const std::vector<unsigned>& numbers, const
 }
 
 void FakeBoard::watch(FakeLine& line) {
+    const std::lock_guard lock(wires);
     line.watched = ::pipe2(line.pipe.data(), O_NONBLOCK | O_CLOEXEC) == 0;
 }
 
 void FakeBoard::free(FakeLine& line) {
+    const std::lock_guard lock(wires);
     line.user.clear();
     line.output = false;
     if (line.watched)
@@ -52,7 +60,24 @@ void FakeBoard::free(FakeLine& line) {
     line.edges.clear();
 }
 
+void FakeBoard::drive(FakeLine& line, bool level) {
+    const std::lock_guard lock(wires);
+    line.rises += level && !line.level;
+    line.level = level;
+}
+
+bool FakeBoard::is_high(const FakeLine& line) {
+    const std::lock_guard lock(wires);
+    return line.level;
+}
+
+int FakeBoard::rises_of(const FakeLine& line) {
+    const std::lock_guard lock(wires);
+    return line.rises;
+}
+
 void FakeBoard::turn(FakeLine& line, bool level, std::int64_t time_ns) {
+    const std::lock_guard lock(wires);
     if (line.level == level) return;
     line.level = level;
     if (!line.watched || line.edges.size() == 16) return;
@@ -61,6 +86,7 @@ void FakeBoard::turn(FakeLine& line, bool level, std::int64_t time_ns) {
 }
 
 bool FakeBoard::pop(FakeLine& line, FakeEdge& edge) {
+    const std::lock_guard lock(wires);
     char byte = 0;
     if (line.edges.empty() || ::read(line.pipe[0], &byte, 1) != 1) return false;
     edge = line.edges.front();

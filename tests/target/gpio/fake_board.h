@@ -25,6 +25,7 @@ struct FakeLine {
     std::string name, user;
     bool output = false, watched = false;
     bool level = false;  // of the wire
+    int rises = 0;       // as an output
     gpio::Drive drive = gpio::Drive::push_pull;
     gpio::Pull pull = gpio::Pull::as_is;
     std::deque<FakeEdge> edges;
@@ -52,8 +53,12 @@ struct FakeBoard {
     FakeChip* chip_at(const std::string& path);
     // A request's: false, and nothing is taken, if any of them is held.
     bool take(FakeChip& chip, const std::vector<unsigned>& numbers, const char* user);
+    // These may be called from several threads: a wire may turn while the program runs.
     static void watch(FakeLine& line);
     static void free(FakeLine& line);
+    static void drive(FakeLine& line, bool level);
+    static bool is_high(const FakeLine& line);
+    static int rises_of(const FakeLine& line);
     // What happens at the wire.
     static void turn(FakeLine& line, bool level, std::int64_t time_ns);
     static bool pop(FakeLine& line, FakeEdge& edge);

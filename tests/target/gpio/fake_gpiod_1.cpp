@@ -113,7 +113,7 @@ int gpiod_line_set_value_bulk(gpiod_line_bulk* bulk, const int* levels) {
     if (board().must_fail(Call::set)) return -1;
     for (unsigned i = 0; i < bulk->num_lines; ++i) {
         ++board().lines_set;
-        bulk->lines[i]->fake().level = levels[i] != 0;
+        FakeBoard::drive(bulk->lines[i]->fake(), levels[i] != 0);
     }
     return 0;
 }
@@ -141,7 +141,7 @@ int gpiod_line_event_get_fd(gpiod_line* line) {
 }
 
 int gpiod_line_get_value(gpiod_line* line) {
-    return board().must_fail(Call::read) ? -1 : line->fake().level;
+    return board().must_fail(Call::read) ? -1 : FakeBoard::is_high(line->fake());
 }
 
 int gpiod_line_event_read_multiple(gpiod_line* line, gpiod_line_event* events, unsigned int room) {

@@ -190,14 +190,14 @@ int gpiod_line_request_set_values_subset(gpiod_line_request* request, size_t cou
     if (board().must_fail(Call::set)) return -1;
     for (std::size_t i = 0; i < count; ++i) {
         ++board().lines_set;
-        request->fake->lines.at(numbers[i]).level = values[i] == GPIOD_LINE_VALUE_ACTIVE;
+        FakeBoard::drive(request->fake->lines.at(numbers[i]), values[i] == GPIOD_LINE_VALUE_ACTIVE);
     }
     return 0;
 }
 gpiod_line_value gpiod_line_request_get_value(gpiod_line_request* request, unsigned int number) {
     if (board().must_fail(Call::read)) return GPIOD_LINE_VALUE_ERROR;
-    return request->fake->lines.at(number).level ? GPIOD_LINE_VALUE_ACTIVE
-                                                 : GPIOD_LINE_VALUE_INACTIVE;
+    return FakeBoard::is_high(request->fake->lines.at(number)) ? GPIOD_LINE_VALUE_ACTIVE
+                                                               : GPIOD_LINE_VALUE_INACTIVE;
 }
 int gpiod_line_request_get_fd(gpiod_line_request* request) {
     return request->fake->lines.at(request->numbers.front()).pipe[0];
