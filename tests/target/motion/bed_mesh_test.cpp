@@ -184,6 +184,24 @@ TEST_CASE("limits 4: on a tilted bed z turns with an arc, and keeps to its accel
     }
 }
 
+TEST_CASE(
+    "limits 4: what climbs over a tilted bed is as fast as z can follow both, along lines and "
+    "arcs") {
+    Limits limits = test::even_limits(1e6, 1e9);
+    limits.axes[axis_z] = {2, 1e9};
+    limits.bed_jump_mm_s = 1e6;
+    constexpr double slope = 0.02, rise_mm = 5;
+    const BedMesh bed({0, 0}, {100, 100}, 2, {0, slope * 100, 0, slope * 100}, 0);
+    limits.bed = bed.shape();
+    for (const Path& path : {Path{Line{{20, 20, 0}, {80, 20, rise_mm}}},
+                             circle_about({60, 50, 0}, 50, 50, true, rise_mm, 0)}) {
+        const double rise = rise_mm / length_of(path), level = std::sqrt(1 - rise * rise);
+        const double speed_mm_s = limits_of({path, 1e6, 0, 0}, limits).speed_mm_s;
+        CHECK(speed_mm_s * (rise + slope * level) ==
+              doctest::Approx(limits.axes[axis_z].speed_mm_s));
+    }
+}
+
 TEST_CASE("limits 4: the speed of z jumped where a bed had faded") {
     Limits limits = test::even_limits(200, 3'000);
     limits.axes[axis_z] = {40, 500};

@@ -107,6 +107,28 @@ TEST_CASE(
     CHECK(at_limit == arcs);
 }
 
+TEST_CASE(
+    "limits 1, 2: what z does not hold back turns and climbs as fast as it would turn on the "
+    "level") {
+    Limits limits = test::even_limits(100, 3000);
+    limits.axes[axis_z] = {1e6, 1e9};
+    // Bound by what the turn needs, and by the axes' speed.
+    for (const double radius_mm : {0.2, 1e3})
+        for (const double asked_mm_s2 : {0.0, 500.0}) {
+            const auto limits_with = [&](double rise_mm) {
+                const Path path = circle_about({radius_mm, 0, 0}, 0, 0, true, rise_mm, 0);
+                return limits_of({path, 1e6, asked_mm_s2, 0}, limits);
+            };
+            const MoveLimits level = limits_with(0), climbing = limits_with(10 * radius_mm);
+            const double share = 2 * pi / std::hypot(2 * pi, 10);
+            CHECK(climbing.speed_mm_s * share == doctest::Approx(level.speed_mm_s));
+            // Along the path no more than what is asked for.
+            CHECK(
+                climbing.acceleration_mm_s2 ==
+                doctest::Approx(asked_mm_s2 > 0 ? asked_mm_s2 : level.acceleration_mm_s2 / share));
+        }
+}
+
 TEST_CASE("limits 2: the acceleration asked for bounds the one towards the centre too") {
     Move circle{circle_about({8, 0, 0}, 0, 0, true, 0, 0), 1000, 200, 0};
     const MoveLimits own = limits_of(circle, test::even_limits(1e4, 1e6));

@@ -28,8 +28,8 @@ double duration_s(const std::vector<PlannedMove>& plan) {
     return plan.empty() ? 0 : test::end_ns_of(plan.back()) / 1e9;
 }
 
-// Gone at an even speed, in all.
-double even_mm(const std::vector<PlannedMove>& plan) {
+// Gone at an even speed, in all or after something has braked.
+double even_mm(const std::vector<PlannedMove>& plan, bool has_braked = true) {
     double sum_mm = 0;
     for (const PlannedMove& planned : plan)
         for (std::size_t i = 0; i < Profile::phase_count; ++i) {
@@ -37,8 +37,11 @@ double even_mm(const std::vector<PlannedMove>& plan) {
             const double end_mm = i + 1 < Profile::phase_count
                                       ? planned.profile.phases[i + 1].distance_mm
                                       : planned.profile.length_mm;
-            if (phase.acceleration_mm_s2 == 0 && phase.jerk_mm_s3 == 0)
-                sum_mm += end_mm - phase.distance_mm;
+            const double way_mm = end_mm - phase.distance_mm;
+            // More than by the rounding of a speed.
+            has_braked = has_braked || (phase.acceleration_mm_s2 < 0 && way_mm > Planner::join_mm);
+            if (phase.acceleration_mm_s2 == 0 && phase.jerk_mm_s3 == 0 && has_braked)
+                sum_mm += way_mm;
         }
     return sum_mm;
 }
@@ -287,6 +290,40 @@ TEST_CASE("planner 7: windows that hold a slow place plan as one that holds all"
                         doctest::Approx(whole[i].profile.duration_s).epsilon(relative_rounding));
             }
         }
+    }
+}
+
+TEST_CASE("planner 7: what goes straight on beyond a window brakes once, when it has to") {
+    // The peak of a wider view has gone out when the end comes in sight.
+    for (const double ratio : {0.3, 0.9}) {
+        Job job;
+        job.limits.minimum_cruise_ratio = ratio;
+        job.capacity = 64;
+        constexpr int pieces = 300;
+        const auto place = [](int i) { return Point{0.1 * i, 0, 0}; };
+        for (int i = 0; i < pieces; ++i)
+            job.moves.push_back({Line{place(i), place(i + 1), 0}, 290, 0, 0});
+        CHECK(even_mm(plan_of(job), false) < Planner::join_mm);
+    }
+}
+
+TEST_CASE(
+    "planner 7: a line after a flush cruises for its ratio, however fast the ones before were") {
+    Limits limits = even_limits(300, 3000);
+    limits.minimum_cruise_ratio = 0.5;
+    Planner planner = *Planner::create(limits, 8);
+    Point at;
+    // The ring is full of pieces that are passed at speed, and then shorter runs take a part of it.
+    for (const int pieces : {8, 3, 1}) {
+        for (int i = 0; i < pieces; ++i) {
+            const Point to{at.x + 1, 0, 0};
+            REQUIRE(planner.push({Line{at, to, 0}, 290, 0, 0}).ok());
+            at = to;
+        }
+        planner.flush();
+        std::vector<PlannedMove> plan;
+        for (PlannedMove planned; planner.pop(planned);) plan.push_back(planned);
+        CHECK(even_mm(plan) == doctest::Approx(0.5 * pieces));
     }
 }
 
