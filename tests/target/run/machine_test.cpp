@@ -135,6 +135,63 @@ TEST_CASE("machine: axes with backlash follow the file, a fifth of it late after
     }
 }
 
+TEST_CASE(
+    "machine: an axis that is later after turns than its play explains is not within limits") {
+    config::Printer printer = config::generic_printer();
+    printer.backlash_mm[config::axis_x] = 0.1;
+    SimulationReport report = simulated(write_print("late", {draw_square}), printer);
+    const double a_fifth = 0.1 * printer.axes[config::axis_x].steps_per_mm / 5;
+    report.planned_steps[config::axis_x] = 0.5 + 0.9 * a_fifth;
+    CHECK(report.within_limits());
+    report.planned_steps[config::axis_x] = 0.5 + 1.1 * a_fifth;
+    CHECK_FALSE(report.within_limits());
+}
+
+TEST_CASE(
+    "machine: axes with backlash are where each move ends, whichever way the first one goes") {
+    config::Printer printer = config::generic_printer();
+    printer.backlash_mm = {0.1, 0.25, 0};
+    const std::array<double, 5> stops_mm{0, 3.3, -1.1, 5.7, 0.2};
+    for (const double sign : {1.0, -1.0})
+        for (std::size_t moves = 1; moves < stops_mm.size(); ++moves) {
+            // x and y go opposite ways.
+            const auto place = [&](std::size_t i) {
+                return motion::Point{sign * stops_mm[i], -sign * stops_mm[i], 0};
+            };
+            Result<motion::Planner> planner = motion::Planner::create(motion_limits(printer));
+            REQUIRE(planner.ok());
+            for (std::size_t i = 0; i < moves; ++i)
+                REQUIRE(planner->push({motion::Line{place(i), place(i + 1)}, 50}).ok());
+            planner->flush();
+            MotorSteps generator(printer);
+            // As after a motion downwards, axes stand where their motors do.
+            std::array<double, 2> motors{}, axes{};
+            std::array<std::int64_t, 2> stepped_ns{-1, -1};
+            const auto follow = [&] {
+                motion::StepEvent event;
+                while (generator.next(std::span(&event, 1)) == 1) {
+                    std::vector<Step> steps;
+                    append_steps(std::span(&event, 1), steps);
+                    for (const Step& step : steps) {
+                        const double play =
+                            printer.backlash_mm[step.axis] * printer.axes[step.axis].steps_per_mm;
+                        double& motor = motors[step.axis];
+                        motor += step.positive ? 1 : -1;
+                        axes[step.axis] = std::clamp(axes[step.axis], motor - play, motor);
+                        REQUIRE(step.time_ns > std::exchange(stepped_ns[step.axis], step.time_ns));
+                    }
+                }
+            };
+            for (motion::PlannedMove planned; planner->pop(planned); follow())
+                generator.start(planned);
+            generator.finish();
+            follow();
+            const motion::Point end = place(moves);
+            CHECK(std::abs(axes[0] - end.x * printer.axes[0].steps_per_mm) <= 0.501);
+            CHECK(std::abs(axes[1] - end.y * printer.axes[1].steps_per_mm) <= 0.501);
+        }
+}
+
 TEST_CASE("machine check 1, 3: a step left out, doubled, late or of another motor is found" *
           doctest::test_suite("long")) {
     const std::string file = whole_print("mutated", {0.3, false, 20, 30});
