@@ -192,6 +192,31 @@ TEST_CASE(
         }
 }
 
+TEST_CASE("machine: arcs that climb are fed for their way in space, and end at their height") {
+    constexpr double radius_mm = 2, rise_mm = 2;
+    constexpr int arcs = 4;
+    const auto draw_helix = [](const Pen& pen) {
+        pen.path(20);
+        pen.travel(0, 0);
+        const double base_mm = static_cast<double>(pen.layer.position().z) * 1e-3;
+        for (int i = 1; i <= arcs; ++i) {
+            const double x_mm = i % 2 ? 2 * radius_mm : 0;
+            pen.layer.arc_to(pen.frame.x(x_mm, 0), pen.frame.y(x_mm, 0), base_mm + i * rise_mm,
+                             pen.frame.sagitta(radius_mm));
+        }
+    };
+    for (const bool mirrored : {false, true}) {
+        const std::string file = write_print("helix", {draw_helix}, {0.3, mirrored, 20, 30});
+        const SimulationReport report = simulated(file, config::generic_printer());
+        CAPTURE(text_of(report));
+        CHECK(report.within_limits());
+        const double way_mm = arcs * std::hypot(std::numbers::pi * radius_mm, rise_mm);
+        CHECK(report.totals.extruded_mm == doctest::Approx(way_mm).epsilon(1e-4));
+        CHECK(report.positions[config::axis_z] ==
+              std::llround((layer_height_mm + arcs * rise_mm) * 400));
+    }
+}
+
 TEST_CASE("machine check 1, 3: a step left out, doubled, late or of another motor is found" *
           doctest::test_suite("long")) {
     const std::string file = whole_print("mutated", {0.3, false, 20, 30});
