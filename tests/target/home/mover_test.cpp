@@ -52,10 +52,13 @@ public:
         std::this_thread::sleep_for(std::chrono::nanoseconds(time_ns));
         return true;
     }
-    std::int64_t count() const { return count_; }
+    std::int64_t count() const {
+        const std::lock_guard lock(mutex_);
+        return count_;
+    }
 
 private:
-    std::mutex mutex_;
+    mutable std::mutex mutex_;
     std::int64_t count_;
     const gpio::Clock& clock_;
     gpio::LineMask levels_ = 0;
@@ -168,8 +171,10 @@ TEST_CASE("mover 3: a signal brings the machine to rest, with status stopped") {
     SharedMachine bench(1'000'000, clock);
     const run::StopSignals signals;
     Mover mover(printer, bench, clock, &bench, [&] { return signals.wait_ms(0) ? 1U : 0U; });
-    std::thread user([] {
-        std::this_thread::sleep_for(std::chrono::milliseconds(150));
+    std::thread user([&bench] {
+        // Once it moves, however busy the machine is.
+        for (int i = 0; i < 2'000 && bench.count() < 1'000'080; ++i)
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
         ::kill(::getpid(), SIGTERM);
     });
     const auto moved = mover.run(printer, along_x(printer, 100, 20), {});
