@@ -270,8 +270,9 @@ Status print(const Arguments& arguments, const config::Printer& printer) {
     job.resumption = std::move(*resumption);
     job.is_lifted = home::homed_before_print(printer, arguments.resume).any();
     if (job.is_lifted)
-        job.before = [&job](gpio::GpioChip& chip, gpio::Clock& clock, const run::StopSource& stop) {
-            return home::home_before_print(job.printer, job.resumption, chip, clock, stop);
+        job.before = [&job](gpio::GpioChip& chip, gpio::Clock& clock, const run::StopSource& stop,
+                            const run::NoteRisen& note) {
+            return home::home_before_print(job.printer, job.resumption, chip, clock, stop, note);
         };
     if (!arguments.dry_run) job.journal = run::journal_path(printer, arguments.lyr_path);
     job.forgets_others = !arguments.dry_run && counts_on_height(printer);

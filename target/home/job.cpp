@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "base/constants.h"
 #include "base/text.h"
@@ -133,12 +134,12 @@ AxisSet homed_before_print(const config::Printer& printer, bool resumes) {
 
 run::Before home_before_print(const config::Printer& printer,
                               const std::optional<run::Resumption>& resumption,
-                              gpio::GpioChip& chip, gpio::Clock& clock,
-                              const run::StopSource& stop) {
+                              gpio::GpioChip& chip, gpio::Clock& clock, const run::StopSource& stop,
+                              const run::NoteRisen& note) {
     const Result<std::unique_ptr<gpio::InputLines>> inputs = open_inputs(printer);
     if (!inputs) return Status(inputs.error());
     Mover mover(printer, chip, clock, inputs->get(), stop);
-    Status homed = home_before_print(mover, printer, resumption);
+    Status homed = home_before_print(mover, printer, resumption, note);
     // A delta homes z, and asks for no height.
     if (printer.kinematics == config::Kinematics::delta) return homed;
     return {std::move(homed), static_cast<double>(mover.counts()[config::axis_z]) /
@@ -146,7 +147,8 @@ run::Before home_before_print(const config::Printer& printer,
 }
 
 Status home_before_print(Mover& mover, const config::Printer& printer,
-                         const std::optional<run::Resumption>& resumption) {
+                         const std::optional<run::Resumption>& resumption,
+                         const run::NoteRisen& note) {
     const AxisSet axes = homed_before_print(printer, resumption.has_value());
     config::Printer machine = resumption ? run::lifted(printer, *resumption) : printer;
     motion::Point start = start_of(machine);
@@ -154,15 +156,24 @@ Status home_before_print(Mover& mover, const config::Printer& printer,
     const auto bed = moves::bed_of(printer);
     const double lift_mm = bed ? bed->lift_mm(start) : 0;
     start.z += lift_mm;
-    if (resumption && !axes[config::axis_z]) {
-        const motion::Point found{start.x, start.y, resumption->stopped_z_mm + lift_mm};
-        if (Status lifted = travel(mover, printer, found, start); !lifted) return lifted;
-        machine.start_mm[config::axis_z] = start.z;
-        machine.homing.lift_mm = std::max(
-            0.0, std::min(machine.homing.lift_mm, printer.axes[config::axis_z].max_mm - start.z));
+    const bool keeps_height = resumption && !axes[config::axis_z];
+    const double found_mm = keeps_height ? resumption->stopped_z_mm + lift_mm : start.z;
+    const auto noted = [&](double z_mm) {
+        return keeps_height && note ? note(z_mm - found_mm) : Status(Done{});
+    };
+    if (keeps_height) {
+        // All at once what the homing would lift.
+        motion::Point up = start;
+        up.z = std::max(start.z, std::min(start.z + std::exchange(machine.homing.lift_mm, 0.0),
+                                          printer.axes[config::axis_z].max_mm));
+        const motion::Point found{start.x, start.y, found_mm};
+        if (Status lifted = travel(mover, printer, found, up); !lifted) return lifted;
+        machine.start_mm[config::axis_z] = up.z;
+        if (Status is_known = noted(up.z); !is_known) return is_known;
     }
     const Result<Homed> homed = home(mover, machine, axes);
     if (!homed) return homed.error();
+    if (Status is_known = noted(start.z); !is_known) return is_known;
     return travel(mover, printer, homed->head, start);
 }
 

@@ -7,7 +7,8 @@
 //  3. A jog ends within the ranges of the printer's file, or is refused (status machine) before it moves.
 //  4. Before a print that resumes, the nozzle stands in the part: nothing moves sideways before it was lifted, and only x
 //     and y are homed, the height being that of the resumption. A delta, which homes upwards, finds its height too. The
-//     print begins where run::lifted() says.
+//     print begins where run::lifted() says. How high the head is meanwhile is noted once it is there, and before it
+//     comes down: what was noted last is never more than that, but while it goes up.
 //  5. What the kernel refuses of real time is a warning.
 
 #pragma once
@@ -48,10 +49,11 @@ Result<Report> home(const Job& job, AxisSet axes, const std::optional<motion::Po
 AxisSet homed_before_print(const config::Printer& printer, bool resumes);
 run::Before home_before_print(const config::Printer& printer,
                               const std::optional<run::Resumption>& resumption,
-                              gpio::GpioChip& chip, gpio::Clock& clock,
-                              const run::StopSource& stop);
+                              gpio::GpioChip& chip, gpio::Clock& clock, const run::StopSource& stop,
+                              const run::NoteRisen& note);
 Status home_before_print(Mover& mover, const config::Printer& printer,
-                         const std::optional<run::Resumption>& resumption);
+                         const std::optional<run::Resumption>& resumption,
+                         const run::NoteRisen& note = {});
 
 std::string text_of(const Report& report);
 

@@ -184,6 +184,15 @@ Diagnostic stopped_before(const Watched& watched) {
     return ended;
 }
 
+// Of a head that waits for its path: how high it is by then.
+Status note_risen(const PrintJob& job, std::optional<Journal>& journal, double risen_mm) {
+    if (!job.resumption || !journal) return Done{};
+    JournalEntry entry = job.resumption->entry;
+    entry.rest_nm = std::llround((job.resumption->stopped_z_mm + risen_mm) * nm_per_mm);
+    entry.place_um.reset();
+    return journal->write(entry);
+}
+
 // What is to be done before the path, and whether that may begin.
 Before open(const Watched& watched, const PrintJob& job, Prepared& prepared, gpio::GpioChip& chip,
             gpio::Clock& clock) {
@@ -200,7 +209,9 @@ Before open(const Watched& watched, const PrintJob& job, Prepared& prepared, gpi
                         look_after(watched, now_s);
                         feed(watched, now_s);
                     });
-    const Before before = job.before(chip, clock, [&] { return opening.asked(); });
+    const Before before = job.before(
+        chip, clock, [&] { return opening.asked(); },
+        [&](double risen_mm) { return note_risen(job, prepared.journal.journal, risen_mm); });
     (void)opening.asked();
     if (shared.stop_requests.load() == 0) return before;
     // Serves what ends it.
@@ -208,24 +219,15 @@ Before open(const Watched& watched, const PrintJob& job, Prepared& prepared, gpi
     return {stopped_before(watched), before.risen_mm};
 }
 
-// Of a resumption that ends before its path.
-void keep_height(const Resumption& resumption, double risen_mm, bool is_cancelled,
-                 Journal& journal) {
-    if (is_cancelled) return journal.remove();
-    if (risen_mm == 0) return;
-    JournalEntry entry = resumption.entry;
-    entry.rest_nm = std::llround((resumption.stopped_z_mm + risen_mm) * nm_per_mm);
-    entry.place_um.reset();
-    // What went wrong before is the message.
-    (void)journal.write(entry);
-}
-
 // A print whose path does not begin.
 Diagnostic left_unbegun(const PrintJob& job, PrintJournal& journal, const Before& opened,
                         gpio::GpioChip& chip, Life& life) {
     (void)chip.release();
-    if (job.resumption && journal.journal)
-        keep_height(*job.resumption, opened.risen_mm, life.is_cancelled(), *journal.journal);
+    const bool resumes = job.resumption && journal.journal;
+    if (resumes && life.is_cancelled()) journal.journal->remove();
+    // What went wrong before is the message.
+    else if (opened.risen_mm != 0)
+        (void)note_risen(job, journal.journal, opened.risen_mm);
     life.end(opened.status, false);
     return opened.status.error();
 }

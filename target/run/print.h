@@ -48,13 +48,18 @@ struct Before {
     double risen_mm;  // how far the head has gone up, done or not
 };
 
+// Of a head that has gone up by so much, or is about to come down to that: it is on the disk when this returns, or an
+// error.
+using NoteRisen = std::function<Status(double risen_mm)>;
+
 struct PrintJob {
     std::string file;
     config::Printer printer;
     bool no_heat = false;
     ProgressSink progress;
     // What is done on the lines before the print, such as homing: the motors are to stay on and the head at start_mm.
-    std::function<Before(gpio::GpioChip&, gpio::Clock&, const StopSource&)> before{};
+    std::function<Before(gpio::GpioChip&, gpio::Clock&, const StopSource&, const NoteRisen&)>
+        before{};
     PrintControl* control = nullptr;  // none: only signals and buttons do something
     bool is_reachable = true;         // somebody can give the control commands
     // Called once, when the file and the printer are found right: no line is held yet, and signals still end the program.

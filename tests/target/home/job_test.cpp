@@ -55,6 +55,40 @@ TEST_CASE(
     }
 }
 
+TEST_CASE(
+    "homing before a print 4: a loss of power while it homed, lifted, was resumed that much too "
+    "high") {
+    config::Printer printer = machine_of(Kinematics::cartesian);
+    printer.start_mm = {20, 20, 0.2};
+    printer.simulated.head_mm = {120, 100, 10};
+    printer.homing.lift_mm = 3;
+    run::Resumption resumption;
+    resumption.stopped_z_mm = 10;
+    const double up_mm = printer.pause.lift_mm + 3;
+    for (const bool fails : {false, true}) {
+        CAPTURE(fails);
+        Scene scene(printer);
+        const auto risen_mm = [&] {
+            return static_cast<double>(scene.mover.counts()[config::axis_z]) /
+                   printer.axes[config::axis_z].steps_per_mm;
+        };
+        std::vector<double> told_mm;
+        const Status homed =
+            home::home_before_print(scene.mover, printer, resumption, [&](double mm) -> Status {
+                told_mm.push_back(mm);
+                // It stands up there both times.
+                CHECK(risen_mm() == doctest::Approx(up_mm));
+                if (fails && told_mm.size() == 2)
+                    return Diagnostic{Severity::error, ExitStatus::output, "disk full", {}};
+                return Done{};
+            });
+        CHECK(homed.ok() == !fails);
+        CHECK(told_mm == std::vector<double>{up_mm, printer.pause.lift_mm});
+        // And comes down only if that is written.
+        CHECK(risen_mm() == doctest::Approx(fails ? up_mm : printer.pause.lift_mm));
+    }
+}
+
 TEST_CASE("homing before a print 4: without endstops of x and y none resumes with homing") {
     config::Printer printer = machine_of(Kinematics::cartesian);
     CHECK(home::homed_before_print(printer, false) == home::AxisSet(0b111));

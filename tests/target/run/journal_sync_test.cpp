@@ -83,7 +83,7 @@ TEST_CASE(
     PrintJob job{write_print("outlived", {draw_small}), nearby_printer(), false, {}};
     job.journal = job.file + ".journal";
     bool has_begun = false;
-    job.before = [&](gpio::GpioChip&, gpio::Clock&, const StopSource&) {
+    job.before = [&](gpio::GpioChip&, gpio::Clock&, const StopSource&, const NoteRisen&) {
         has_begun = true;
         return Status(Done{});
     };

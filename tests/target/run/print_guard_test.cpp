@@ -237,7 +237,8 @@ TEST_CASE("print: one that resumes heated while it homed, with the nozzle in the
     job.resumption = resumption;
     job.is_lifted = true;
     bool was_warm = false;
-    job.before = [&](gpio::GpioChip&, gpio::Clock& clock, const StopSource& stop) -> Before {
+    job.before = [&](gpio::GpioChip&, gpio::Clock& clock, const StopSource& stop,
+                     const NoteRisen&) -> Before {
         for (int look = 0; look < 30; ++look) {
             clock.wait_until_ns(clock.now_ns() + 20'000'000);
             (void)stop();

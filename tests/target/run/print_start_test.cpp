@@ -128,7 +128,7 @@ Homed print_and_disturb(const std::function<void(PrintControl&, gpio::MockInputs
     job.control = &control;
     bool begun = false;
     job.begun = [&] { begun = true; };
-    job.before = [&](gpio::GpioChip&, gpio::Clock&, const StopSource& stop) {
+    job.before = [&](gpio::GpioChip&, gpio::Clock&, const StopSource& stop, const NoteRisen&) {
         CHECK(begun);
         return home_for_a_second(stop, homed.asked, [&] {
             homed.meanwhile = control.status();
@@ -211,7 +211,7 @@ TEST_CASE("print 2: heaters were not refreshed before the path, and their keeper
     gpio::MockChip chip(start_lines, clock, {});
     PrintJob job{write_print("refreshed", {draw_stroke}), printer, false, {}};
     int before = 0;
-    job.before = [&](gpio::GpioChip&, gpio::Clock&, const StopSource& stop) {
+    job.before = [&](gpio::GpioChip&, gpio::Clock&, const StopSource& stop, const NoteRisen&) {
         unsigned asked = 0;
         const Status homed = home_for_a_second(stop, asked, [] {});
         before = reads;
@@ -260,7 +260,7 @@ TEST_CASE(
     PrintJob job{write_print("anew", {draw_stroke}), patient_printer(), true, {}};
     job.journal = job.file + ".journal";
     bool has_begun = false;
-    job.before = [&](gpio::GpioChip&, gpio::Clock&, const StopSource&) -> Status {
+    job.before = [&](gpio::GpioChip&, gpio::Clock&, const StopSource&, const NoteRisen&) -> Status {
         has_begun = true;
         // As a kill or a loss of power leaves it.
         CHECK_FALSE(find_resumption(job.printer, job.file).ok());
@@ -289,7 +289,7 @@ TEST_CASE(
     const std::string journal = journal_path(printer, rested);
     gpio::MonotonicClock clock;
     bool has_begun = false;
-    job.before = [&](gpio::GpioChip&, gpio::Clock&, const StopSource&) -> Status {
+    job.before = [&](gpio::GpioChip&, gpio::Clock&, const StopSource&, const NoteRisen&) -> Status {
         CHECK_FALSE(std::filesystem::exists(journal));
         has_begun = true;
         return Done{};
@@ -354,7 +354,8 @@ TEST_CASE(
         resumption.stopped_z_mm = 7;
         job.resumption = resumption;
         job.is_lifted = true;
-        job.before = [&](gpio::GpioChip&, gpio::Clock&, const StopSource&) -> Before {
+        job.before = [&](gpio::GpioChip&, gpio::Clock&, const StopSource&,
+                         const NoteRisen&) -> Before {
             if (is_cancelled) control.post(Cancel{});
             return {Diagnostic{Severity::error, ExitStatus::machine, "no endstop", {}}, 3.25};
         };
