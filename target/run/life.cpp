@@ -93,8 +93,9 @@ void Life::serve(const Command& command) {
                             ? "emergency stop, by input.emergency: "
                             : "emergency stop: ") +
             "steps and heaters are off, and the position of the head is lost; " +
-            std::string(knows_height() ? "leave z where it is to go on with --resume, or " : "") +
-            "home the printer before the next print";
+            (knows_height() ? "leave z where it is to go on with --resume, or remove the print's "
+                              ".journal file and home the printer before the next print"
+                            : "home the printer before the next print");
         phase_ = Phase::over;
     } else if (std::holds_alternative<Resume>(command)) {
         resume();

@@ -140,8 +140,8 @@ Status check_none_rests(const config::Printer& printer) {
     for (const std::string& path : journals_beside(printer, journal_path(printer, "")))
         return refused(is_kept(path) ? "a print is under way on this printer"
                                      : "a print was cut off, and --resume takes its height from "
-                                       "where the head stands: resume it, or remove this file "
-                                       "first",
+                                       "where the head stands: resume it, or, to home or move "
+                                       "the head, remove this file first",
                        path);
     return Done{};
 }
