@@ -26,8 +26,8 @@ std::string found(const toml::node& node) {
         text << plain(number->get());
     else if (const auto* integer = node.as_integer())
         text << integer->get();
-    else if (node.is_string())
-        text << "a text";
+    else if (const auto* written = node.as_string())
+        text << (written->get().empty() ? "an empty text" : "a text");
     else if (node.is_boolean())
         text << "true or false";
     else

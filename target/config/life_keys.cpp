@@ -67,7 +67,10 @@ Problems life_problems(const Printer& printer) {
     for (const auto& [at_mm, number] : {std::pair{x_mm, axis_x}, {y_mm, axis_y}})
         if (const auto where = outside(printer, number, at_mm))
             return {{"pause.park_mm", ": " + *where}};
-    if (printer.kinematics == Kinematics::delta && std::hypot(x_mm, y_mm) > printer.delta.reach_mm)
+    // Without a reach, that is what is wrong.
+    const double reach_mm = printer.delta.reach_mm;
+    if (printer.kinematics == Kinematics::delta && reach_mm > 0 &&
+        std::hypot(x_mm, y_mm) > reach_mm)
         return {{"pause.park_mm", ": farther from the middle than delta.reach_mm"}};
     return {};
 }

@@ -74,6 +74,12 @@ void append_shaper_problems(const Printer& printer, const Given& given, Problems
 }
 
 void append_delta_problems(const Printer& printer, const Given& given, Problems& problems) {
+    if (!given("delta")) {
+        problems.emplace_back("kinematics",
+                              ": \"delta\" needs a section [delta] with arm_mm, radius_mm and "
+                              "reach_mm");
+        return;
+    }
     bool whole = true;
     for (const char* key : {"delta.arm_mm", "delta.radius_mm", "delta.reach_mm"}) {
         if (given(key)) continue;

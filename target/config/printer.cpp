@@ -15,6 +15,7 @@
 #include "base/constants.h"
 #include "base/nearest_name.h"
 #include "base/read_text.h"
+#include "base/text.h"
 #include "target/config/heater_keys.h"
 #include "target/config/homing_keys.h"
 #include "target/config/idle_keys.h"
@@ -27,6 +28,13 @@ namespace {
 
 // A printer's file has a few kilobytes; more is some other file.
 constexpr std::size_t largest_file = std::size_t{1} << 20;
+// A row of a mesh of 100 points has a quarter of it. A key of more parts than fit would be so many tables in one another,
+// each read and destroyed by a call within the last one's; cmake/toml.cmake bounds the rest of the nesting.
+constexpr std::size_t longest_line = 4'096;
+// No more are listed in a message.
+constexpr std::size_t few_names = 4;
+// A shorter part of a name says nothing.
+constexpr std::size_t shortest_part = 4;
 
 struct Place {
     std::uint32_t line = 0, column = 0;
@@ -46,6 +54,25 @@ Diagnostic input_error(std::string message, const std::string& file, Place place
     return error;
 }
 
+// The only known name that holds what was written: "max_accel" stands for max_acceleration_mm_s2.
+std::string name_in_full(std::string_view part, const std::vector<std::string>& known) {
+    if (part.size() < shortest_part) return {};
+    std::string found;
+    for (const std::string& name : known) {
+        if (name.find(part) == std::string::npos) continue;
+        if (!found.empty()) return {};
+        found = name;
+    }
+    return found;
+}
+
+// "bed, chamber, tool"
+std::string listed(const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+    return text;
+}
+
 // Reads the tables of one file into a draft.
 class Walk {
 public:
@@ -63,6 +90,8 @@ public:
     // The first problem in the order of the file.
     const std::pair<Place, std::string>* first_problem() const;
     Draft& draft() { return draft_; }
+    // The file has this key or section.
+    bool has(const std::string& path) const { return places_.count(path) != 0; }
 
 private:
     void entry(const toml::key& name, const toml::node& node, const std::string& path);
@@ -131,9 +160,14 @@ void Walk::unknown(const toml::key& name, const std::string& prefix) {
     const std::vector<std::string> candidates(here.begin(), here.end());
     std::string message = "unknown key `" + std::string(name.str()) + '`';
     if (!prefix.empty()) message += " in [" + prefix.substr(0, prefix.size() - 1) + ']';
-    const std::string nearest = nearest_name(name.str(), candidates);
-    message += nearest.empty() ? "; docs/configuration.md lists the keys"
-                               : "; did you mean `" + nearest + "`?";
+    std::string nearest = nearest_name(name.str(), candidates);
+    if (nearest.empty()) nearest = name_in_full(name.str(), candidates);
+    if (!nearest.empty())
+        message += "; did you mean `" + nearest + "`?";
+    else if (candidates.size() <= few_names)
+        message += "; known are " + listed(candidates);
+    else
+        message += "; docs/configuration.md lists the keys";
     problem(place_of(name.source()), std::move(message));
 }
 
@@ -219,7 +253,7 @@ void Walk::check_pulses() {
 }
 
 void Walk::check_machine() {
-    const auto given = [this](const std::string& path) { return places_.count(path) != 0; };
+    const auto given = [this](const std::string& path) { return has(path); };
     for (const auto& problems :
          {machine_problems(draft_.printer, given), homing_problems(draft_.printer, given),
           heat_problems(draft_.printer, given), life_problems(draft_.printer),
@@ -244,7 +278,21 @@ const std::pair<Place, std::string>* Walk::first_problem() const {
     return first == problems_.end() ? nullptr : &*first;
 }
 
+Status check_lines_short(std::string_view text, const std::string& file) {
+    std::uint32_t number = 0;
+    for (std::size_t begin = 0; begin < text.size(); ++number) {
+        const std::size_t end = std::min(text.find('\n', begin), text.size());
+        if (end - begin > longest_line)
+            return input_error("this line has more than " + counted(longest_line, "byte") +
+                                   ", which no value needs; a long list can take several lines",
+                               file, {number + 1, 1});
+        begin = end + 1;
+    }
+    return Done{};
+}
+
 Status take(Walk& walk, std::string_view text, const std::string& file) {
+    if (Status are_short = check_lines_short(text, file); !are_short) return are_short;
     const toml::parse_result parsed = toml::parse(text, file);
     if (!parsed)
         return input_error(std::string(parsed.error().description()), file,
@@ -290,6 +338,7 @@ Result<Printer> parse_printer(std::string_view text, const std::string& file) {
     if (const auto* problem = walk.first_problem())
         return input_error(problem->second, file, problem->first);
     Printer printer = std::move(walk.draft().printer);
+    printer.timing.is_given = walk.has("timing");
     if (printer.name.empty()) printer.name = "unnamed";
     return printer;
 }

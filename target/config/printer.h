@@ -67,6 +67,7 @@ struct BoardTiming {
     std::optional<std::int64_t> late_ns;  // of one edge in 10,000; none: not measured
     std::int64_t write_ns = 2'000;        // what one write of lines takes
     std::optional<unsigned> cpu;          // that writes the lines; none: any
+    bool is_given = false;                // the printer's file has a [timing]
 };
 
 // An arm this much of whose length lies level is 10 degrees from flat; beyond, it pulls rather than lifts.

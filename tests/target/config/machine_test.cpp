@@ -61,7 +61,7 @@ TEST_CASE("machine: a delta's frame, one number for three towers or a list") {
 }
 
 TEST_CASE("printer 7: a delta without its frame, or that does not reach, is refused") {
-    check_error("kinematics = \"delta\"\n", 0, "delta.arm_mm is missing");
+    check_error("kinematics = \"delta\"\n", 1, "needs a section [delta] with arm_mm, radius_mm");
     check_error(changed(delta, "arm_mm = 250\n", ""), 2, "delta.arm_mm is missing");
     check_error(changed(delta, "reach_mm = 100\n", ""), 2, "delta.reach_mm is missing");
     check_error(changed(delta, "reach_mm = 100", "reach_mm = 125"), 5, "reaches 123.75 mm");

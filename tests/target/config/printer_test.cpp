@@ -329,6 +329,47 @@ TEST_CASE("printer: a heater and a fan shared a PWM channel, and two heaters a s
           "heater.bed.sensor.file: this file is already used by heater.tool.sensor.file");
 }
 
+TEST_CASE("printer: a key of 100,000 parts ended the program") {
+    std::string key = "a";
+    for (int part = 1; part < 100'000; ++part) key += ".a";
+    check_error(good + key + " = 1\n", 28, "more than 4096 bytes");
+    check_error("\n[" + key + "]\n" + good, 2, "more than 4096 bytes");
+    key.resize(1'999);
+    check_error(good + key + " = 1\n", 28, "unknown key `a`");
+    // Such keys in one another, in lists, which may have many lines.
+    std::string nested;
+    for (int depth = 0; depth < 100; ++depth) nested += "{ " + key + " = [\n";
+    check_error("name = " + nested, 9, "nested value depth of 16");
+}
+
+TEST_CASE("printer: a delta without its section was told of where it parks") {
+    const std::string text =
+        "kinematics = \"delta\"\n[pause]\npark_mm = [10, 0]\n" + good.substr(good.find("[pulse]"));
+    check_error(text, 1, "kinematics: \"delta\" needs a section [delta]");
+    check_error(text + "[delta]\narm_mm = 200\nradius_mm = 100\n", 29,
+                "delta.reach_mm is missing");
+}
+
+TEST_CASE("printer: an empty name of a line was told to be a text") {
+    check_error(with("= 17", "= \"\""), 10, "found an empty text");
+    check_error(with("= 17", "= { line = \"\" }"), 10, "found an empty text");
+}
+
+TEST_CASE("printer: half a name got no suggestion") {
+    check_error(with("max_acceleration_mm_s2 = 3000", "max_accel = 3000"), 8,
+                "did you mean `max_acceleration_mm_s2`?");
+    check_error(good + "[heater.hotend]\n", 28, "known are bed, chamber, tool");
+    // Of several none is better.
+    check_error(with("max_acceleration_mm_s2 = 3000", "mm_s = 3000"), 8, "configuration.md");
+}
+
+TEST_CASE("printer: a folder as calibration file was told to be the printer's") {
+    const auto read = parse_printer("calibration_file = \"/tmp\"\n" + good, "printer.toml");
+    REQUIRE_FALSE(read.ok());
+    CHECK(read.error().where.file == "/tmp");
+    CHECK(read.error().message == "cannot read the calibration_file: Is a directory");
+}
+
 TEST_CASE("printer: files that are missing, folders or far too large are refused by name") {
     const auto missing = read_printer("/nonexistent/printer.toml");
     REQUIRE_FALSE(missing.ok());
