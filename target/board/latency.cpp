@@ -117,6 +117,14 @@ std::optional<Diagnostic> warning_of(std::int64_t worst_ns, std::int64_t limit_n
         {}};
 }
 
+Diagnostic has_timing_note() {
+    return {Severity::note,
+            ExitStatus::ok,
+            "the printer's file has a [timing] already, and TOML allows no second one: the measured "
+            "keys are printed as comments; put them into that section by hand",
+            {}};
+}
+
 }  // namespace
 
 std::size_t Times::bucket_of(std::uint64_t time_ns) {
@@ -174,6 +182,8 @@ Result<LatencyReport> measure_latency(const LatencyJob& job, gpio::Clock& clock,
     measured.timing.late_ns = std::max(report.asleep.rare_ns, report.awake.rare_ns);
     if (report.write) measured.timing.write_ns = report.write->rare_ns;
     report.steps_per_s = config::held_steps_per_s(measured);
+    report.has_timing = job.printer.timing.is_given;
+    if (report.has_timing) report.warnings.push_back(has_timing_note());
     if (const auto warning = warning_of(std::max(report.asleep.worst_ns, report.awake.worst_ns),
                                         job.printer.pulse.late_limit_ns))
         report.warnings.push_back(*warning);
@@ -217,14 +227,16 @@ std::string text_of(const LatencyReport& report) {
         if (report.histogram[i])
             text += formatted("# waits less than %9llu us late: %llu\n", 1ULL << i,
                               static_cast<unsigned long long>(report.histogram[i]));
-    text += formatted(
-        "# All motors can step at %.0f steps a second each. For printer.toml:\n[timing]\n",
-        report.steps_per_s);
+    text += formatted("# All motors can step at %.0f steps a second each. For ",
+                      report.steps_per_s);
+    text += report.has_timing ? "the [timing] that printer.toml has, in place of its own:\n"
+                              : "printer.toml:\n[timing]\n";
+    const char* key = report.has_timing ? "# " : "";
     const std::int64_t late_ns = std::max(report.asleep.rare_ns, report.awake.rare_ns);
-    text += formatted("late_us = %.1f\n", static_cast<double>(late_ns) / ns_per_us);
+    text += formatted("%slate_us = %.1f\n", key, static_cast<double>(late_ns) / ns_per_us);
     if (report.write)
-        text +=
-            formatted("write_us = %.1f\n", static_cast<double>(report.write->rare_ns) / ns_per_us);
+        text += formatted("%swrite_us = %.1f\n", key,
+                          static_cast<double>(report.write->rare_ns) / ns_per_us);
     return text;
 }
 

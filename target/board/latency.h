@@ -11,7 +11,8 @@
 //  2. Lines are written only if there is a chip: every one of its lines its inactive level, which it has.
 //  3. printer.toml's keys timing.late_us and timing.write_us are the rare ones, of both kinds of wait the later.
 //  4. A wait that ended later than the printer allows a print's edge to come is a warning.
-//  5. text_of() is TOML: two keys, and comments.
+//  5. text_of() is TOML: two keys, and comments. Where the printer's file has a [timing] already, which TOML allows only
+//     once, the keys are comments too, and a note says so.
 //  6. What is held does not grow with the time that is measured.
 
 #pragma once
@@ -65,6 +66,7 @@ struct LatencyReport {
     std::optional<Spread> write;           // none: no lines were written
     std::vector<std::uint64_t> histogram;  // bucket k: less than 2^k us late, of all waits
     double steps_per_s = 0;                // what a motor may be asked for then
+    bool has_timing = false;               // the printer's file has a [timing] already
     Diagnostics warnings;
 };
 

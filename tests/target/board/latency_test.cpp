@@ -164,6 +164,28 @@ TEST_CASE("latency 5: what is told can be put into the printer's file as it is")
     CHECK(config::held_steps_per_s(*printer) == doctest::Approx(report->steps_per_s));
 }
 
+TEST_CASE("latency 5: a second [timing] broke the printer's file") {
+    const std::string axis =
+        "\nsteps_per_mm = 80\nmax_speed_mm_s = 100\nmax_acceleration_mm_s2 = 1000\n";
+    std::string file;
+    for (const char* name : {"x", "y", "z"})
+        file += std::string("[axis.") + name + "]\nrange_mm = [0, 200]" + axis;
+    file += "[axis.e]" + axis + "[timing]\ncpu = 0\n";
+    LatencyJob job = job_of(1);
+    job.printer = *config::parse_printer(file, "printer.toml");
+    gpio::VirtualClock clock([](std::int64_t) { return 12'300; });
+    const auto report = measure_latency(job, clock, nullptr);
+    REQUIRE(report.ok());
+    REQUIRE(report->warnings.size() == 1);
+    CHECK(report->warnings[0].severity == Severity::note);
+    const std::string text = text_of(*report);
+    CHECK(text.find("\n# late_us = 12.3\n") != std::string::npos);
+    const auto printer = config::parse_printer(file + text, "printer.toml");
+    REQUIRE_MESSAGE(printer.ok(), to_string(printer.error()));
+    CHECK(printer->timing.cpu == 0);
+    CHECK_FALSE(printer->timing.late_ns.has_value());
+}
+
 TEST_CASE("latency: a real measurement ends after the time asked for") {
     const auto report = measure_latency(job_of(0.2));
     REQUIRE(report.ok());

@@ -367,7 +367,7 @@ TEST_CASE("printer: a folder as calibration file was told to be the printer's") 
     const auto read = parse_printer("calibration_file = \"/tmp\"\n" + good, "printer.toml");
     REQUIRE_FALSE(read.ok());
     CHECK(read.error().where.file == "/tmp");
-    CHECK(read.error().message == "cannot read the calibration_file: Is a directory");
+    CHECK(read.error().message == "cannot read: Is a directory");
 }
 
 TEST_CASE("printer: files that are missing, folders or far too large are refused by name") {
