@@ -301,10 +301,17 @@ bool asks_of_a_print(const Arguments& arguments) {
 
 Status check_board_together(const Arguments& arguments) {
     const BoardArguments& board = arguments.board;
+    if (arguments.printer_path.empty()) {
+        const char* option = board.off ? "--off" : board.check ? "--check" : "--measure-latency";
+        if (board.off || board.check || board.measure)
+            return usage(std::string(option) +
+                         " needs --printer FILE, which says what the machine "
+                         "is");
+    }
     if (board.off) {
-        if (board.check || board.measure || board.lines || asks_of_a_print(arguments) ||
-            arguments.tune || arguments.place.given() || arguments.simulate || arguments.json ||
-            !arguments.faults_path.empty())
+        if (board.check || board.measure || board.lines || board.has_seconds ||
+            asks_of_a_print(arguments) || arguments.tune || arguments.place.given() ||
+            arguments.simulate || arguments.json || !arguments.faults_path.empty())
             return usage("--off goes with --printer alone");
         return Done{};
     }
@@ -312,6 +319,7 @@ Status check_board_together(const Arguments& arguments) {
         return usage(board.check ? "--check goes without --measure-latency"
                                  : "--lines goes with --measure-latency");
     if (board.lines && board.check) return usage("--lines goes with --measure-latency");
+    if (board.check && board.has_seconds) return usage("--seconds goes with --measure-latency");
     if (asks_of_a_print(arguments) || arguments.tune || arguments.place.given() ||
         arguments.simulate || !arguments.faults_path.empty() || (arguments.json && !board.check))
         return usage(board.check ? "--check goes with --printer and --json alone"
@@ -323,6 +331,7 @@ Status check_board_together(const Arguments& arguments) {
 // What makes no sense together.
 Status check_together(const Arguments& arguments) {
     if (arguments.board.given()) return check_board_together(arguments);
+    if (arguments.board.has_seconds) return usage("--seconds goes with --measure-latency");
     if (arguments.place.tool_c && !arguments.place.feed_mm)
         return usage("--tool goes with --jog e=MM");
     if (arguments.place.feed_mm &&
@@ -394,5 +403,8 @@ int main(int argc, char** argv) {
     Arguments arguments;
     return run_main(
         program, argc, argv, [&](Options& app) { add_options(app, arguments); },
-        [&](const Options&) { return work(arguments); });
+        [&](const Options& app) {
+            arguments.board.has_seconds = app.count("--seconds") != 0;
+            return work(arguments);
+        });
 }

@@ -42,7 +42,7 @@ void add_board_options(Options& app, BoardArguments& arguments) {
     add_flag(app, "--lines", arguments.lines,
              "With --measure-latency: write the motors' lines too, all of them inactive");
     add_numbers(app, "--seconds", "N", std::span(&arguments.seconds, 1), {0.1, 3'600, "s"},
-                "How long to measure");
+                "With --measure-latency: how long to measure");
 }
 
 Status work_board(const Program& program, const BoardArguments& arguments,

@@ -11,6 +11,7 @@ namespace lyr::command_line {
 struct BoardArguments {
     bool check = false, measure = false, lines = false, off = false;
     double seconds = 10;
+    bool has_seconds = false;  // they were given
 
     bool given() const { return check || measure || lines || off; }
 };

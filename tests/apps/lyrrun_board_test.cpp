@@ -50,9 +50,12 @@ TEST_CASE("lyrrun --measure-latency: what it prints is a section that the printe
     const Folder folder = with_cartesian();
     const Ended measured = folder.run(
         "lyrrun --measure-latency --seconds 0.3 --printer p.toml >> p.toml &&\n"
+        "lyrrun --measure-latency --seconds 0.1 --printer p.toml >> p.toml &&\n"
         "lyrrun --measure-latency --seconds 0.1 --printer p.toml");
     CHECK(measured.status == 0);
-    CHECK(measured.out.find("\n[timing]\nlate_us = ") != std::string::npos);
+    CHECK(measured.err.find("the printer's file has a [timing] already") != std::string::npos);
+    CHECK(measured.out.find("\n# late_us = ") != std::string::npos);
+    CHECK(text_of(folder / "p.toml").find("\n[timing]\nlate_us = ") != std::string::npos);
     CHECK(text_of(folder / "p.toml").find("# Timing of the board of \"cartesian") !=
           std::string::npos);
 }
@@ -82,13 +85,16 @@ TEST_CASE("lyrrun --check, --measure-latency: what makes no sense together is re
          {"--check --measure-latency", "--check --lines", "--lines", "--check --simulate",
           "--measure-latency --json", "--check part.lyr", "--check --tune tool=200",
           "--measure-latency --home", "--measure-latency --seconds 0", "--off --check",
-          "--off part.lyr", "--off --simulate"}) {
+          "--off part.lyr", "--off --simulate", "--check --seconds 5", "--off --seconds 5",
+          "part.lyr --simulate --seconds 5", "--lines --seconds 5"}) {
         CAPTURE(options);
         const Ended ended = folder.run(std::string("lyrrun --printer p.toml ") + options);
         CHECK(ended.status == 2);
         CHECK(lines_in(ended.err) == 1);
     }
-    CHECK(folder.run("lyrrun --check").status == 2);
+    for (const char* option : {"--check", "--measure-latency", "--off"})
+        check_failure(folder.run(std::string("lyrrun ") + option), "lyrrun", 2,
+                      std::string(option) + " needs --printer FILE");
 }
 
 TEST_CASE("lyrrun: a print takes at most 8 MB of memory, however long it is" *
