@@ -118,11 +118,12 @@ std::optional<Diagnostic> warning_of(std::int64_t worst_ns, std::int64_t limit_n
 }
 
 Diagnostic has_timing_note() {
-    return {Severity::note,
-            ExitStatus::ok,
-            "the printer's file has a [timing] already, and TOML allows no second one: the measured "
-            "keys are printed as comments; put them into that section by hand",
-            {}};
+    return {
+        Severity::note,
+        ExitStatus::ok,
+        "the printer's file has a [timing] already, and TOML allows no second one: the measured "
+        "keys are printed as comments; put them into that section by hand",
+        {}};
 }
 
 }  // namespace
@@ -227,8 +228,8 @@ std::string text_of(const LatencyReport& report) {
         if (report.histogram[i])
             text += formatted("# waits less than %9llu us late: %llu\n", 1ULL << i,
                               static_cast<unsigned long long>(report.histogram[i]));
-    text += formatted("# All motors can step at %.0f steps a second each. For ",
-                      report.steps_per_s);
+    text +=
+        formatted("# All motors can step at %.0f steps a second each. For ", report.steps_per_s);
     text += report.has_timing ? "the [timing] that printer.toml has, in place of its own:\n"
                               : "printer.toml:\n[timing]\n";
     const char* key = report.has_timing ? "# " : "";

@@ -427,25 +427,6 @@ motion::Point Life::head() const {
     return head;
 }
 
-void Life::heat_for(const Resumption& resumption) {
-    for (const format::HeaterTarget& target : resumption.state.temperatures)
-        if (const auto heater = heater_number(target.heater))
-            desk_.set_target(*heater, target.target_c);
-}
-
-void Life::begin_with(const Resumption& resumption, bool is_lifted) {
-    layer_ = resumption.first_layer + 1;
-    parked_at_ = {printer_.start_mm[0], printer_.start_mm[1], printer_.start_mm[2]};
-    if (!is_lifted) parked_at_.z = resumption.stopped_z_mm;
-    is_to_lift_ = !is_lifted;
-    before_ns_ = resumption.entry.time_ns;
-    drawn_back_on_path_mm_ = resumption.drawn_back_mm;
-    is_unloaded_ = awaits_filament_ = resumption.entry.is_unloaded;
-    resumes_ = true;
-    course_.wanted_pace.store(0);
-    phase_ = Phase::heating;
-}
-
 void Life::lift() {
     const Leg leg{{parked_at_.x, parked_at_.y, printer_.start_mm[2]}, 0, printer_.pause.speed_mm_s};
     phase_ = Phase::lifting;

@@ -1,9 +1,10 @@
-// What a print tells of itself: its status, and its journal.
+// What a print tells of itself, its status and its journal, and what it begins with where it has such a journal.
 
 #include <cmath>
 #include <utility>
 
 #include "base/constants.h"
+#include "target/run/heat_order.h"
 #include "target/run/life.h"
 
 namespace lyr::run {
@@ -142,6 +143,25 @@ void Life::publish(PrintState state, bool is_position_known) {
     status.filament_mm = static_cast<double>(course_.steps_on_path()[config::axis_e]) /
                          printer_.axes[config::axis_e].steps_per_mm;
     control_.publish(std::move(status));
+}
+
+void Life::heat_for(const Resumption& resumption) {
+    for (const format::HeaterTarget& target : resumption.state.temperatures)
+        if (const auto heater = heater_number(target.heater))
+            desk_.set_target(*heater, target.target_c);
+}
+
+void Life::begin_with(const Resumption& resumption, bool is_lifted) {
+    layer_ = resumption.first_layer + 1;
+    parked_at_ = {printer_.start_mm[0], printer_.start_mm[1], printer_.start_mm[2]};
+    if (!is_lifted) parked_at_.z = resumption.stopped_z_mm;
+    is_to_lift_ = !is_lifted;
+    before_ns_ = resumption.entry.time_ns;
+    drawn_back_on_path_mm_ = resumption.drawn_back_mm;
+    is_unloaded_ = awaits_filament_ = resumption.entry.is_unloaded;
+    resumes_ = true;
+    course_.wanted_pace.store(0);
+    phase_ = Phase::heating;
 }
 
 void Life::end(const Status& result, bool is_position_known) {

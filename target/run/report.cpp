@@ -168,9 +168,8 @@ std::string text_of(const SimulationReport& report) {
     if (report.paused_s > 0) text += ", and " + duration_text(report.paused_s) + " of pauses";
     if (report.slowed_s > 0)
         text += ", and " + duration_text(report.slowed_s) + " more at the lower speed asked for";
-    text +=
-        formatted("\n  extruded     %.3f mm with %.3f mm of %.2f mm filament\n", totals.extruded_mm,
-                  totals.filament_mm, report.filament_diameter_mm);
+    text += formatted("\n  extruded     %.3f mm with %.3f mm of %.2f mm filament\n",
+                      totals.extruded_mm, totals.filament_mm, report.filament_diameter_mm);
     text += formatted("  travelled    %.3f mm\n", totals.travelled_mm);
     append_heat(text, report);
     append_axes(text, report);

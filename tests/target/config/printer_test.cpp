@@ -346,8 +346,7 @@ TEST_CASE("printer: a delta without its section was told of where it parks") {
     const std::string text =
         "kinematics = \"delta\"\n[pause]\npark_mm = [10, 0]\n" + good.substr(good.find("[pulse]"));
     check_error(text, 1, "kinematics: \"delta\" needs a section [delta]");
-    check_error(text + "[delta]\narm_mm = 200\nradius_mm = 100\n", 29,
-                "delta.reach_mm is missing");
+    check_error(text + "[delta]\narm_mm = 200\nradius_mm = 100\n", 29, "delta.reach_mm is missing");
 }
 
 TEST_CASE("printer: an empty name of a line was told to be a text") {
