@@ -39,6 +39,11 @@ Diagnostic differ(const Target& target, double off_mm) {
                             off_mm, target.tolerance_mm));
 }
 
+// Where several go together none is faster than its own endstop lets it.
+double least(std::span<const Target> targets, double Target::*speed_mm_s) {
+    return std::ranges::min(targets, {}, speed_mm_s).*speed_mm_s;
+}
+
 }  // namespace
 
 ByAxes::Positions ByAxes::after(const Positions& from_mm, const motion::StepCounts& counts) const {
@@ -105,17 +110,16 @@ Status ByAxes::check_open(std::span<const Target> targets) {
 Result<ByAxes::Positions> ByAxes::touch_slowly(std::span<const Target> targets,
                                                const Positions& leave_mm) {
     Positions way_mm{};
-    double speed_mm_s = targets.front().fast_mm_s, reach_mm = 0;
+    double reach_mm = 0;
     for (const Target& target : targets) {
         way_mm[target.axis] =
             leave_mm[target.axis] - target.direction * target.back_off_mm - at_mm_[target.axis];
         reach_mm = std::max(reach_mm, 2 * target.back_off_mm);
-        speed_mm_s = std::min(speed_mm_s, target.fast_mm_s);
     }
-    const Result<Moved> moved = move(way_mm, speed_mm_s);
+    const Result<Moved> moved = move(way_mm, least(targets, &Target::fast_mm_s));
     if (!moved) return moved.error();
     if (Status open = check_open(targets); !open) return open.error();
-    return touch(targets, targets.front().slow_mm_s, reach_mm);
+    return touch(targets, least(targets, &Target::slow_mm_s), reach_mm);
 }
 
 Result<double> ByAxes::home(std::span<const Target> targets) {
@@ -128,7 +132,7 @@ Result<double> ByAxes::home(std::span<const Target> targets) {
     if (!open.empty()) {
         double reach_mm = 0;
         for (const Target& target : open) reach_mm = std::max(reach_mm, target.reach_mm);
-        const Result<Positions> fast = touch(open, open.front().fast_mm_s, reach_mm);
+        const Result<Positions> fast = touch(open, least(open, &Target::fast_mm_s), reach_mm);
         if (!fast) return fast.error();
         for (const Target& target : open) first_mm[target.axis] = (*fast)[target.axis];
     }
@@ -148,7 +152,7 @@ Result<double> ByAxes::home(std::span<const Target> targets) {
         at_mm_[axis] += target.at_mm - (*found_mm)[axis];
         away_mm[axis] = target.at_mm - target.direction * target.back_off_mm - at_mm_[axis];
     }
-    const Result<Moved> moved = move(away_mm, targets.front().fast_mm_s);
+    const Result<Moved> moved = move(away_mm, least(targets, &Target::fast_mm_s));
     if (!moved) return moved.error();
     return repeat_mm;
 }

@@ -137,3 +137,18 @@ TEST_CASE("homing 3: how far a dead tower goes does not depend on how soon the o
         CHECK(std::abs(went_from({-30, 50, 120}) - from_below) <= 1);
     }
 }
+
+TEST_CASE("homing 2: the towers of a delta all went as fast as the first one's endstop said") {
+    config::Printer printer = machine_of(Kinematics::delta);
+    printer.simulated.head_mm = {60, 20, 120};
+    printer.endstops[0].fast_mm_s = 40;
+    printer.endstops[1].fast_mm_s = printer.endstops[2].fast_mm_s = 10;
+    Timed scene{printer};
+    REQUIRE(home::home(scene.mover, printer, homable(printer)).ok());
+    for (std::size_t tower = 0; tower < 3; ++tower)
+        for (const bool upwards : {true, false}) {
+            CAPTURE(tower);
+            CAPTURE(upwards);
+            CHECK_FALSE(scene.exceeds(tower, upwards, printer.endstops[tower].fast_mm_s));
+        }
+}
