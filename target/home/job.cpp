@@ -50,22 +50,19 @@ Status on_board(const config::Printer& printer, Diagnostics& warnings, const Wor
     run::lock_memory(warnings);
     run::try_precedence(printer.timing.cpu, warnings);
     gpio::MonotonicClock clock;
-    bool is_emergency = false;
+    std::optional<Diagnostic> emergency;
     const auto stop = [&]() -> unsigned {
         constexpr unsigned at_once = 2;
-        is_emergency =
-            is_emergency || (*buttons && run::asks_for_emergency(**buttons, clock.now_ns()));
-        if (is_emergency) return at_once;
+        if (*buttons && !emergency) emergency = run::emergency(**buttons, clock.now_ns());
+        if (emergency) return at_once;
         return signals.wait_ms(0) ? 1 : 0;
     };
     Mover mover(printer, **chip, clock, inputs->get(), stop);
     Status done = work(mover);
     Status released = (*chip)->release();
     if (done) return released;
-    if (!is_emergency || done.error().status != ExitStatus::stopped) return done;
-    Diagnostic why = done.error();
-    why.message += " of input.emergency, which is active";
-    return why;
+    if (!emergency || done.error().status != ExitStatus::stopped) return done;
+    return *emergency;
 }
 
 // Within the ranges, and within a delta's reach.

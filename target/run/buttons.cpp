@@ -69,10 +69,15 @@ Result<std::optional<Buttons>> open_buttons(const config::Printer& printer) {
     return std::optional<Buttons>(std::move(*buttons));
 }
 
-bool asks_for_emergency(Buttons& buttons, std::int64_t now_ns) {
+std::optional<Diagnostic> emergency(Buttons& buttons, std::int64_t now_ns) {
     const Result<std::vector<std::size_t>> pressed = buttons.pressed(now_ns);
-    return !pressed ||
-           std::find(pressed->begin(), pressed->end(), config::input_emergency) != pressed->end();
+    if (!pressed) return pressed.error();
+    if (std::find(pressed->begin(), pressed->end(), config::input_emergency) == pressed->end())
+        return std::nullopt;
+    return Diagnostic{Severity::error,
+                      ExitStatus::stopped,
+                      "stopped on request of input.emergency, which is active",
+                      {}};
 }
 
 }  // namespace lyr::run

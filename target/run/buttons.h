@@ -45,8 +45,9 @@ private:
 // On a board; none: the printer has no inputs.
 Result<std::optional<Buttons>> open_buttons(const config::Printer& printer);
 
-// Where there is no print that a button could mean: the emergency line has become active, or cannot be read.
-bool asks_for_emergency(Buttons& buttons, std::int64_t now_ns);
+// Where there is no print that a button could mean. None: all is well. The emergency line has become active (status
+// stopped), or the lines cannot be read (theirs).
+std::optional<Diagnostic> emergency(Buttons& buttons, std::int64_t now_ns);
 
 std::vector<gpio::InputRequest> input_requests(const config::Printer& printer);
 

@@ -36,13 +36,13 @@ std::optional<Diagnostic> TendedHeat::tick() {
     if (heating_.control->trip()) return diagnostic_of(*heating_.control->trip());
     std::optional<Diagnostic> why;
     if (heating_.stage->latched())
-        why = over("reading the sensors took more than 3 s; all heaters are off",
-                   ExitStatus::machine);
-    else if (buttons_ && asks_for_emergency(*buttons_, gpio::MonotonicClock().now_ns()))
-        why = over("the emergency line stopped it; all heaters are off", ExitStatus::stopped);
-    else if (signals_.wait_ms(tick_ms))
-        why = over("stopped on request; all heaters are off", ExitStatus::stopped);
-    if (why) (void)heating_.stage->all_off();
+        why = over("reading the sensors took more than 3 s", ExitStatus::machine);
+    else if (buttons_)
+        why = emergency(*buttons_, gpio::MonotonicClock().now_ns());
+    if (!why && signals_.wait_ms(tick_ms)) why = over("stopped on request", ExitStatus::stopped);
+    if (!why) return std::nullopt;
+    why->message += "; all heaters are off";
+    (void)heating_.stage->all_off();
     return why;
 }
 

@@ -94,3 +94,20 @@ TEST_CASE("mover 3: an emergency line that becomes active ends homing and jogs w
         CHECK(steps < way_mm * steps_per_mm);
     }
 }
+
+TEST_CASE("mover 3: an emergency line that chatters was told to be active") {
+    const home::Job job = job_on_fake_board();
+    std::thread user([] {
+        for (int i = 0; i < 2'000 && FakeBoard::rises_of(line(x_step)) < steps_per_mm; ++i)
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        constexpr int turns = 20;
+        const std::int64_t now_ns = gpio::MonotonicClock().now_ns();
+        for (int i = 0; i < turns; ++i)
+            FakeBoard::turn(line(emergency_line), i % 2 == 0, now_ns + i);
+    });
+    const Result<home::Report> report = home_x(job);
+    user.join();
+    REQUIRE_FALSE(report.ok());
+    CHECK(report.error().message.find("edges come faster than they can be taken") !=
+          std::string::npos);
+}
