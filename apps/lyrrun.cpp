@@ -225,6 +225,10 @@ Status simulate(const Arguments& arguments, const config::Printer& printer) {
     job.script = std::move(*script);
     job.resumption = std::move(*resumption);
     if (!arguments.trace_path.empty()) job.trace = arguments.trace_path;
+    job.ended = [&line](const Diagnostics& notes) {
+        line.clear();
+        show(program, notes);
+    };
     const Result<run::SimulationReport> report = run::simulate(job);
     line.clear();
     if (!report) return report.error();

@@ -95,6 +95,8 @@ public:
     // What the clock showed, less the time of the event itself, when the path's last one was written, or is being written:
     // waits, rests and braking make it grow.
     std::int64_t behind_ns() const { return behind_ns_; }
+    // How much of that has come since the path began.
+    std::int64_t delayed_ns() const { return behind_ns_ - begun_behind_ns_; }
 
     bool started() const { return started_; }
     bool on_trip() const { return on_trip_; }
@@ -150,7 +152,7 @@ private:
     bool at_gate_ = false;  // reached, and not passed yet
     std::int64_t waited_ns_ = 0;
     std::int64_t path_ns_ = 0;  // time() of the path while on a trip
-    std::int64_t behind_ns_ = 0;
+    std::int64_t behind_ns_ = 0, begun_behind_ns_ = 0;
     StepPositions positions_{}, trip_steps_{};
 };
 

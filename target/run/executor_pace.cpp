@@ -72,7 +72,9 @@ void Executor::start(const LineEvent& event) {
     last_begin_ns_ = last_end_ns_ = clock_.now_ns();
     if (!on_trip_ && started_) return;
     last_event_ns_ = event.time_ns;
-    started_ = started_ || !on_trip_;
+    if (on_trip_) return;
+    started_ = true;
+    begun_behind_ns_ = last_begin_ns_ - event.time_ns;
 }
 
 bool Executor::wait_for_last_slice(std::int64_t time_ns) {

@@ -105,6 +105,7 @@ void Life::serve(const Command& command) {
         desk_.set_fan(fan->duty);
     } else if (const auto* speed = std::get_if<SetSpeedFactor>(&command)) {
         speed_factor_ = speed->factor;
+        has_set_speed_ = true;
         course_.plan_factor.store(static_cast<float>(std::max(1.0, speed_factor_)));
     } else {
         rest_for(command);

@@ -94,6 +94,8 @@ public:
     double time_s() const;
     // From leaving the path to being back.
     double paused_s() const { return paused_s_; }
+    // By command, at some time.
+    bool has_set_speed() const { return has_set_speed_; }
     const std::optional<Diagnostic>& journal_error() const { return journal_error_; }
     bool rests() const { return phase_ == Phase::resting; }
     bool is_cancelled() const { return cancels(); }
@@ -189,7 +191,8 @@ private:
     std::array<double, config::heater_count> idle_since_s_{};  // in a rest
     std::optional<double> heating_since_s_;                    // for going on
     double speed_factor_ = 1, planned_factor_ = 1;  // wanted, and of the path where the head is
-    Trip trip_;                                     // while the motion makes it
+    bool has_set_speed_ = false;
+    Trip trip_;  // while the motion makes it
     motion::Point left_at_, parked_at_;
     double drawn_back_mm_ = 0, drawn_back_on_path_mm_ = 0;
     std::int64_t pushed_steps_ =

@@ -4,6 +4,7 @@
 
 #include "target/run/print.h"
 
+#include <algorithm>
 #include <cmath>
 #include <mutex>
 #include <optional>
@@ -352,6 +353,7 @@ struct Running {
     Executor executor;
     Life life;
     Outcome outcome;
+    std::int64_t delayed_ns = 0;  // of the path, whose last event waits for the head to be parked
 };
 
 // The real-time thread.
@@ -364,6 +366,7 @@ void drive(Running& running, gpio::GpioChip& chip) {
         return follow(events, running.executor, shared.course, running.traced,
                       shared.stop_requests);
     });
+    running.delayed_ns = running.executor.delayed_ns();
     if (executed && *executed && shared.last)
         executed = finish(*shared.last, running.executor, shared.course, running.traced,
                           shared.stop_requests);
@@ -447,6 +450,10 @@ Result<PrintReport> run(const PrintJob& job, Prepared& prepared, gpio::GpioChip&
     report_on(running.executor, running.traced, report);
     report.cpu = running.printer.timing.cpu;
     report.paused_s = life.paused_s();
+    const double delayed_s = static_cast<double>(running.delayed_ns) / ns_per_s;
+    if (life.has_set_speed())
+        report.slowed_s =
+            std::max(0.0, delayed_s - report.stretched_s - report.waited_s - report.paused_s);
     return report;
 }
 

@@ -81,6 +81,7 @@ struct PrintReport {
     std::uint64_t writes = 0;
     double waited_s = 0;  // for temperatures
     double paused_s = 0;
+    double slowed_s = 0;  // by commands for a lower speed
     // How late waits ended; the buckets are those of TracingClock.
     std::array<std::uint64_t, gpio::TracingClock::buckets> lateness{};
     Diagnostics warnings;

@@ -240,6 +240,8 @@ std::string text_of(const PrintReport& report) {
     if (report.waited_s > 0)
         text += formatted("  waited %.1f s for temperatures\n", report.waited_s);
     if (report.paused_s > 0) text += formatted("  paused for %.1f s\n", report.paused_s);
+    if (report.slowed_s > 0)
+        text += formatted("  %.1f s more at the lower speed asked for\n", report.slowed_s);
     for (std::size_t i = 0; i < report.lateness.size(); ++i)
         if (report.lateness[i])
             text += formatted("  waits less than %9llu us late: %llu\n", 1ULL << i,

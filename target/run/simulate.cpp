@@ -101,6 +101,7 @@ public:
     // `trace` is none, or the file to write the wave to.
     Status run(ReplaceFile* trace);
     SimulationReport report() const;
+    const Diagnostics& notes() const { return notes_; }
 
 private:
     Status carry_out(Executor& executor, gpio::GpioChip& chip, ReplaceFile* trace);
@@ -318,7 +319,10 @@ Result<SimulationReport> simulate(const SimulationJob& asked) {
     }
     Simulation simulation(job, *inspection, std::move(*stream), std::move(file), wanted,
                           heeded->heats);
-    if (const Status run = simulation.run(trace ? &*trace : nullptr); !run) return run.error();
+    if (const Status run = simulation.run(trace ? &*trace : nullptr); !run) {
+        if (job.ended) job.ended(simulation.notes());
+        return run.error();
+    }
     if (trace)
         if (const Status written = trace->commit(); !written) return written.error();
     SimulationReport report = simulation.report();

@@ -63,6 +63,8 @@ struct SimulationJob {
     PrintControl* control = nullptr;     // to look on from outside
     std::optional<Resumption> resumption{};
     LineFaults line_faults{};
+    // Of one that ends early, and so has no report: hears its notes.
+    std::function<void(const Diagnostics&)> ended{};
     // After each tick of the heaters, and at the end.
     std::function<void(double time_s, bool any_heater_on)> heat_watch{};
 };

@@ -1,6 +1,7 @@
 // lyrrun from the outside: scripts, and going on with a print that was cut off.
 
 #include "apps/program.h"
+#include "apps/with_print.h"
 #include "target/run/cut_off.h"
 #include "target/run/print_files.h"
 
@@ -213,4 +214,15 @@ TEST_CASE("lyrrun: that recovery.folder is missing was not found by --check") {
     fs::create_directory(print.folder / "missing");
     CHECK(print.folder.run("lyrrun --check --printer p.toml")
               .out.find("ok       recovery.folder: missing is there") != std::string::npos);
+}
+
+TEST_CASE(
+    "lyrrun --simulate: what a script could not have was forgotten where it ended the print") {
+    const Folder folder = with_print("notes");
+    folder.write("script", "0.1 set tool 900\n0.2 cancel\n");
+    const Ended ended = folder.run("lyrrun a.lyr --simulate --no-heat --script script");
+    CHECK(ended.status == 8);
+    CHECK(ended.err.find("refused `set tool 900`") != std::string::npos);
+    CHECK(ended.err.find("cancelled") != std::string::npos);
+    CHECK(lines_in(ended.err) == 2);
 }

@@ -259,3 +259,24 @@ TEST_CASE("event ring 1: a full ring takes no more") {
     ring.drop(1);
     CHECK(ring.push(six) == 1);
 }
+
+TEST_CASE("print: the report left out what a lower speed had cost") {
+    const std::string file = write_print("slowed", {draw_square});
+    gpio::MonotonicClock clock;
+    const auto printed = [&](double speed) {
+        gpio::MockChip chip(8, clock, {});
+        PrintControl control;
+        control.post(SetSpeedFactor{speed});
+        PrintJob job{file, patient_printer(), true, {}};
+        job.control = &control;
+        const Result<PrintReport> report = print(job, chip, clock);
+        REQUIRE_MESSAGE(report.ok(), report.error().message);
+        return *report;
+    };
+    const PrintReport slow = printed(0.5);
+    // As long again, but for the first moments, until the command is served.
+    CHECK(slow.slowed_s > 0.7 * slow.planned_s);
+    CHECK(slow.slowed_s < 1.3 * slow.planned_s);
+    CHECK(text_of(slow).find(" more at the lower speed asked for") != std::string::npos);
+    CHECK(printed(1).slowed_s < 0.1);
+}
