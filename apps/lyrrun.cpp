@@ -60,7 +60,7 @@ constexpr Program program{
     "  lyrrun --printer printer.toml --calibrate mesh     measure how high the bed is where\n"
     "  lyrrun --printer printer.toml --tune tool=210      find a heater's kp, ki and kd\n"
     "  lyrrun part.lyr --printer printer.toml             print\n"
-    "  lyrrun part.lyr --printer printer.toml --no-heat   move the machine, heaters off\n"
+    "  lyrrun part.lyr --printer printer.toml --no-heat   move the machine, touch no heater\n"
     "  lyrrun part.lyr --printer printer.toml --resumable what a loss of power left\n"
     "  lyrrun part.lyr --printer printer.toml --resume    go on at the layer that was cut off\n"
     "\n"
