@@ -153,22 +153,6 @@ void feed(const Watched& watched, double now_s) {
                      status_text(shared.control.status()));
 }
 
-// A thread that says by a number that it goes on.
-class Heartbeat {
-public:
-    // True: for a while it has not.
-    bool is_missed(std::uint32_t beats, double now_s) {
-        if (!std::exchange(has_begun_, true) || beats != beats_) since_s_ = now_s;
-        beats_ = beats;
-        return now_s - since_s_ > thermal::silent_s;
-    }
-
-private:
-    bool has_begun_ = false;
-    std::uint32_t beats_ = 0;
-    double since_s_ = 0;
-};
-
 // Why it was stopped before its path.
 Diagnostic stopped_before(const Watched& watched) {
     const Life& life = watched.life;
@@ -321,15 +305,6 @@ Status status_of(Shared& shared, const Life& life, const Status& planned,
     return Done{};
 }
 
-void report_on(const Executor& executor, const gpio::TracingClock& clock, PrintReport& report) {
-    report.planned_s = static_cast<double>(executor.time_ns()) / ns_per_s;
-    report.stretched_s = static_cast<double>(executor.stretched_ns()) / ns_per_s;
-    report.worst_late_ns = executor.worst_late_ns();
-    report.writes = executor.writes();
-    report.waited_s = static_cast<double>(executor.waited_ns()) / ns_per_s;
-    report.lateness = clock.histogram();
-}
-
 // All that a print has beside its job, until its threads have ended.
 struct Running {
     Running(const PrintJob& job, const Prepared& prepared, gpio::GpioChip& chip, gpio::Clock& clock,
@@ -373,6 +348,38 @@ void drive(Running& running, gpio::GpioChip& chip) {
     const Status released = chip.release();
     if (!released && executed) executed = released.error();
     shared.finished.store(true);
+}
+
+// What the print came to, once its motion has ended: told to all.
+Status conclude(Running& running, const Worker& planner, std::optional<JournalWriter>& journal) {
+    Life& life = running.life;
+    const Result<bool>& executed = running.outcome.executed;
+    const bool is_known = executed.ok() && running.shared.stop_requests < 2;
+    const Status planned = planner.ends_soon() ? running.outcome.planned : Done{};
+    Status status = status_of(running.shared, life, planned, executed, is_known);
+    if (journal && (status || life.is_cancelled()))
+        journal->remove();
+    else if (is_known)
+        life.note_rest();
+    if (journal) journal->finish();
+    life.end(status, is_known);
+    return status;
+}
+
+void report_on(const Running& running, PrintReport& report) {
+    const Executor& executor = running.executor;
+    report.cpu = running.printer.timing.cpu;
+    report.planned_s = static_cast<double>(executor.time_ns()) / ns_per_s;
+    report.stretched_s = static_cast<double>(executor.stretched_ns()) / ns_per_s;
+    report.worst_late_ns = executor.worst_late_ns();
+    report.writes = executor.writes();
+    report.waited_s = static_cast<double>(executor.waited_ns()) / ns_per_s;
+    report.lateness = running.traced.histogram();
+    report.paused_s = running.life.paused_s();
+    if (!running.life.has_set_speed()) return;
+    const double delayed_s = static_cast<double>(running.delayed_ns) / ns_per_s;
+    report.slowed_s =
+        std::max(0.0, delayed_s - report.stretched_s - report.waited_s - report.paused_s);
 }
 
 // Before the threads of a print are waited for, on whatever way that comes.
@@ -433,27 +440,13 @@ Result<PrintReport> run(const PrintJob& job, Prepared& prepared, gpio::GpioChip&
     watch(watched, job, inspection, running.traced);
     edges.join(signals);
     if (heating) (void)heating->stage->all_off();
-    const bool is_known = running.outcome.executed.ok() && shared.stop_requests < 2;
-    const Status planned = planner.ends_soon() ? running.outcome.planned : Done{};
-    const Status status = status_of(shared, life, planned, running.outcome.executed, is_known);
-    if (journal && (status || life.is_cancelled()))
-        journal->remove();
-    else if (is_known)
-        life.note_rest();
-    if (journal) journal->finish();
-    life.end(status, is_known);
+    const Status status = conclude(running, planner, journal);
     // All is off and told: whoever hangs at a sensor or the file is waited for.
     planner.join(signals);
     tending.join(signals);
     if (!status) return status.error();
     if (life.journal_error()) report.warnings.push_back(*life.journal_error());
-    report_on(running.executor, running.traced, report);
-    report.cpu = running.printer.timing.cpu;
-    report.paused_s = life.paused_s();
-    const double delayed_s = static_cast<double>(running.delayed_ns) / ns_per_s;
-    if (life.has_set_speed())
-        report.slowed_s =
-            std::max(0.0, delayed_s - report.stretched_s - report.waited_s - report.paused_s);
+    report_on(running, report);
     return report;
 }
 

@@ -31,4 +31,10 @@ void Worker::join(const StopSignals& signals) {
     if (thread_.joinable()) thread_.join();
 }
 
+bool Heartbeat::is_missed(std::uint32_t beats, double now_s) {
+    if (!std::exchange(has_begun_, true) || beats != beats_) since_s_ = now_s;
+    beats_ = beats;
+    return now_s - since_s_ > patience_s;
+}
+
 }  // namespace lyr::run

@@ -4,10 +4,12 @@
 //  1. The destructor joins: what makes the thread end has been told to it before.
 //  2. ends_soon() waits for it, for patience_s at most.
 //  3. join() waits on where it hangs, as at a sensor's file or that of the print, and lets signals end the program then.
+//  4. A Heartbeat is missed when its number has not changed for as long as that.
 
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <functional>
 #include <thread>
 
@@ -15,11 +17,11 @@
 
 namespace lyr::run {
 
+// As long as heaters may be silent.
+inline constexpr int patience_s = 3;
+
 class Worker {
 public:
-    // As long as heaters may be silent.
-    static constexpr int patience_s = 3;
-
     Worker() = default;
     ~Worker();
     Worker(const Worker&) = delete;
@@ -32,6 +34,17 @@ public:
 private:
     std::atomic<bool> has_ended_{false};
     std::thread thread_;
+};
+
+// Of a thread that says by a number that it goes on.
+class Heartbeat {
+public:
+    bool is_missed(std::uint32_t beats, double now_s);
+
+private:
+    bool has_begun_ = false;
+    std::uint32_t beats_ = 0;
+    double since_s_ = 0;
 };
 
 }  // namespace lyr::run
