@@ -135,7 +135,7 @@ std::size_t Times::bucket_of(std::uint64_t time_ns) {
 
 std::int64_t Times::end_ns(std::size_t bucket) {
     const std::size_t shift = bucket < half ? 0 : bucket / half - 1;
-    return static_cast<std::int64_t>(((bucket - shift * half + 1) << shift) - 1);
+    return (static_cast<std::int64_t>(bucket - shift * half + 1) << shift) - 1;
 }
 
 void Times::add(std::int64_t time_ns) {
