@@ -382,10 +382,13 @@ void report_on(const Running& running, PrintReport& report) {
         std::max(0.0, delayed_s - report.stretched_s - report.waited_s - report.paused_s);
 }
 
-// Before the threads of a print are waited for, on whatever way that comes.
+// Before the threads of a print are waited for, on whatever way that comes: nobody would watch them any more.
 struct Ending {
-    std::atomic<bool>& finished;
-    ~Ending() { finished.store(true); }
+    Shared& shared;
+    ~Ending() {
+        if (!shared.finished.load()) shared.come_to_rest();
+        shared.finished.store(true);
+    }
 };
 
 // What a print may have beside its lines.
@@ -419,7 +422,7 @@ Result<PrintReport> run(const PrintJob& job, Prepared& prepared, gpio::GpioChip&
     // At once: the keeper of the heaters' lines expects to hear of them.
     Tending tending(heating, shared);
     Worker planner, edges;
-    const Ending ending{shared.finished};
+    const Ending ending{shared};
     Supervision supervision(std::move(around.watchdog));
     const Watched watched{signals, shared, life, heating, buttons, supervision};
     if (const Before opened = open(watched, job, prepared, chip, clock); !opened.status) {

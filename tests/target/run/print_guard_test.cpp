@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <new>
 #include <thread>
 
 #include "scratch.h"
@@ -68,7 +69,8 @@ struct HangingBoard {
     std::atomic<bool> hangs{false}, write_hangs{false}, has_hung{false}, was_cut{false};
     double longest_s = 0;
     bool outlasts_heat = false;
-    std::atomic<int> cold_writes{0};  // of the motors' lines, when all heat had been taken away
+    std::atomic<int> writes{0};       // of the motors' lines
+    std::atomic<int> cold_writes{0};  // of those, when all heat had been taken away
     PrintControl control;
     PrintStatus status_then;  // when it had hung
     Listener listener;
@@ -108,6 +110,7 @@ struct HangingBoard {
     }
     void wrote() {
         if (write_hangs && !has_hung) hang();
+        ++writes;
         cold_writes += heating.stage->latched();
     }
     // One that waits for nothing.
@@ -255,4 +258,21 @@ TEST_CASE("print: one that resumes heated while it homed, with the nozzle in the
     REQUIRE_FALSE(report.ok());
     CHECK_FALSE(was_warm);
     CHECK(is_warm);
+}
+
+TEST_CASE("print 3: where the thread that watches a print throws, the head comes to rest") {
+    const auto writes = [](bool throws) {
+        HangingBoard board(0);
+        const PrintJob job{board.cold_file(), board.printer, true, [throws](const Progress&) {
+                               if (throws) throw std::bad_alloc();
+                           }};
+        const auto run = [&] { return print(job, board.chip, board.clock, &board.heating); };
+        if (throws)
+            CHECK_THROWS_AS((void)run(), std::bad_alloc);
+        else
+            CHECK(run().ok());
+        return board.writes.load();
+    };
+    const int all = writes(false);
+    CHECK(writes(true) < all / 2);
 }
