@@ -156,21 +156,27 @@ Result<std::vector<run::TimedCommand>> read_script(const Arguments& arguments) {
     return run::parse_script(*text, path == "-" ? standard_input_name : path);
 }
 
+// Tells what may be wrong with it.
+Result<run::Resumption> found_resumption(const Arguments& arguments,
+                                         const config::Printer& printer) {
+    Result<run::Resumption> found = run::find_resumption(printer, arguments.lyr_path);
+    if (found) show(program, run::lost_entry(printer, arguments.lyr_path));
+    return found;
+}
+
 // None without --resume.
 Result<std::optional<run::Resumption>> resumption_of(const Arguments& arguments,
                                                      const config::Printer& printer) {
     if (!arguments.resume) return std::optional<run::Resumption>();
-    Result<run::Resumption> found = run::find_resumption(printer, arguments.lyr_path);
+    Result<run::Resumption> found = found_resumption(arguments, printer);
     if (!found) return found.error();
-    show(program, run::lost_entry(printer, arguments.lyr_path));
     return std::optional(std::move(*found));
 }
 
 Status tell_resumable(const Arguments& arguments, const config::Printer& printer) {
     if (Status cut_off = run::check_cut_off(printer, arguments.lyr_path); !cut_off) return cut_off;
-    const Result<run::Resumption> found = run::find_resumption(printer, arguments.lyr_path);
+    const Result<run::Resumption> found = found_resumption(arguments, printer);
     if (!found) return found.error();
-    show(program, run::lost_entry(printer, arguments.lyr_path));
     return tell(run::text_of(*found, arguments.lyr_path));
 }
 
@@ -309,8 +315,7 @@ Status check_board_together(const Arguments& arguments) {
         const char* option = board.off ? "--off" : board.check ? "--check" : "--measure-latency";
         if (board.off || board.check || board.measure)
             return usage(std::string(option) +
-                         " needs --printer FILE, which says what the machine "
-                         "is");
+                         " needs --printer FILE, which says what the machine is");
     }
     if (board.off) {
         if (board.check || board.measure || board.lines || board.has_seconds ||

@@ -8,7 +8,7 @@
 //  4. Before a print that resumes, the nozzle stands in the part: nothing moves sideways before it was lifted, and only x
 //     and y are homed, the height being that of the resumption. A delta, which homes upwards, finds its height too. The
 //     print begins where run::lifted() says. How high the head is meanwhile is noted once it is there, and before it
-//     comes down: what was noted last is never more than that, but while it goes up.
+//     comes down: what was noted last is never more than that.
 //  5. What the kernel refuses of real time is a warning.
 
 #pragma once

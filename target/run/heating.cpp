@@ -118,8 +118,7 @@ std::vector<KeyProblem> shared_files(const config::Printer& printer, const std::
 
 Result<Heating> open_heating(const config::Printer& printer) {
     if (const auto shared = shared_files(printer, ""); !shared.empty())
-        return Diagnostic{
-            Severity::error, ExitStatus::machine, shared[0].first + ": " + shared[0].second, {}};
+        return machine_error(shared[0].first + ": " + shared[0].second);
     std::vector<thermal::HeaterPort> ports;
     Outputs all;
     for (std::size_t i = 0; i < config::heater_count; ++i) {
